@@ -1,0 +1,29 @@
+"""Misuse, said in one line: which file, which key, what it holds and what is allowed."""
+
+from __future__ import annotations
+
+__all__ = ["InputError"]
+
+
+class InputError(ValueError):
+    """Input that cannot be used.
+
+    Parameters
+    ----------
+    where : the file (or command-line option) that holds the input, "" when there is none.
+    key : the key, row or field, as a person finds it in that file ("grid.radial").
+    value : what stands there.
+    allowed : what may stand there, and the way out where there is one.
+    """
+
+    def __init__(self, where: object, key: str, value: object, allowed: str) -> None:
+        self.where, self.key, self.value, self.allowed = str(where), key, value, allowed
+        super().__init__(where, key, value, allowed)
+
+    def __str__(self) -> str:
+        shown = repr(self.value) if isinstance(self.value, str) else str(self.value)
+        if len(shown) > 60:
+            shown = shown[:57] + "..."
+        said = f"{self.key} = {shown}" if self.key else shown
+        parts = [part for part in (self.where, said, self.allowed) if part]
+        return " ".join(": ".join(parts).split())

@@ -1,0 +1,50 @@
+"""Writing files so that a kill never leaves half a one, and so that people can read them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+__all__ = ["csv_text", "json_text", "write_atomic"]
+
+
+def write_atomic(path: Path, content: str | bytes) -> None:
+    """Write a whole file or nothing: to a temporary name beside it, to disk, then renamed."""
+    data = content.encode() if isinstance(content, str) else content
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with temporary.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:
+    """A comma-separated table; floats with all their digits, empty cells for None."""
+    lines = [",".join("" if cell is None else _cell(cell) for cell in row) for row in rows]
+    return "\n".join([header, *lines]) + "\n"
+
+
+def _cell(value: object) -> str:
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def json_text(value: object) -> str:
+    """JSON with one key a line and lists of plain values on one line."""
+    return _json(value, "") + "\n"
+
+
+def _json(value: object, indent: str) -> str:
+    inner = indent + " "
+    if isinstance(value, dict) and value:
+        items = [f"{inner}{json.dumps(key)}: {_json(item, inner)}" for key, item in value.items()]
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        items = [inner + _json(item, inner) for item in value]
+        return "[\n" + ",\n".join(items) + f"\n{indent}]"
+    return json.dumps(value, allow_nan=False)

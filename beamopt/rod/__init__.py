@@ -1,0 +1,1 @@
+"""What pressure does to the rod: rest strains, and the shape that follows from them."""

@@ -1,0 +1,1 @@
+"""What a cross-section is: polar grid, Voronoi feature points, walls, moments, pieces."""

@@ -1,0 +1,65 @@
+"""A cross-section as everything above the section floor sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from beamopt.section.drawing import Shape, rasterise
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import PolarGrid
+from beamopt.section.moments import Moments, moments_of
+from beamopt.section.pieces import Pieces, count_pieces
+from beamopt.section.raster import LabelArray, raster
+from beamopt.section.walls import add_walls
+
+__all__ = ["CrossSection"]
+
+
+@dataclass(frozen=True, eq=False)
+class CrossSection:
+    """A grid and the type of each of its elements, walls included.
+
+    labels : (radial, angular) 0 material, 1…3 chamber of that supply.
+    """
+
+    grid: PolarGrid
+    labels: LabelArray
+
+    def __post_init__(self) -> None:
+        if self.labels.shape != self.grid.shape:
+            raise ValueError(f"labels have shape {self.labels.shape}, the grid {self.grid.shape}")
+        self.labels.setflags(write=False)
+
+    @classmethod
+    def from_points(
+        cls, grid: PolarGrid, points: FeaturePoints, wall_elements: int = 4
+    ) -> CrossSection:
+        """The Voronoi section of feature points, with walls between different supplies."""
+        return cls(grid, _walled(grid, raster(grid, points), wall_elements))
+
+    @classmethod
+    def from_drawing(
+        cls, grid: PolarGrid, shapes: Sequence[Shape], wall_elements: int = 4
+    ) -> CrossSection:
+        """The section of drawn chambers, with walls between different supplies."""
+        return cls(grid, _walled(grid, rasterise(grid, shapes), wall_elements))
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Areas, centroid, second moments."""
+        return moments_of(self.grid, self.labels)
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """Connected pieces of material and of chambers."""
+        return count_pieces(self.grid, self.labels)
+
+
+def _walled(grid: PolarGrid, labels: LabelArray, wall_elements: int) -> LabelArray:
+    """`labels` with walls; half of `wall_elements` (an even count) to each side of a boundary."""
+    if wall_elements < 0 or wall_elements % 2:
+        raise ValueError(f"wall_elements = {wall_elements}: must be 0, 2, 4, …")
+    add_walls(labels, wall_elements // 2, grid.is_full_ring)
+    return labels

@@ -1,0 +1,117 @@
+"""Sections drawn by hand: chambers as pieces of a ring with rounded corners, and circles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.raster import LabelArray
+
+__all__ = ["Circle", "RingPiece", "Shape", "rasterise"]
+
+
+@dataclass(frozen=True, slots=True)
+class RingPiece:
+    """A chamber between two radii and two angles, its four corners rounded.
+
+    Parameters
+    ----------
+    supply : 1, 2 or 3.
+    r : inner and outer radius [mm].
+    phi : first and last angle, counter-clockwise [degree].
+    corner : radius of the corners [mm]; 0 for sharp ones.
+
+    Raises
+    ------
+    ValueError : radii or angles out of order, or corners that do not fit.
+    """
+
+    supply: int
+    r: tuple[float, float]
+    phi: tuple[float, float]
+    corner: float = 0.0
+
+    def __post_init__(self) -> None:
+        (inner, outer), (first, last), c = self.r, self.phi, self.corner
+        if not 0 <= inner < outer:
+            raise ValueError(f"r = [{inner:g}, {outer:g}]: two radii in mm, the smaller one first")
+        if not 0 < last - first <= 360:
+            raise ValueError(
+                f"phi = [{first:g}, {last:g}]: two angles in degrees, the second 0…360 above the first"
+            )
+        if last - first == 360 or c == 0:
+            return
+        half = np.radians(last - first) / 2
+        room = (inner + c) * np.sin(min(half, np.pi / 2))
+        if c < 0 or 2 * c > outer - inner or c > room:
+            most = (outer - inner) / 2
+            if half < np.pi / 2 and np.sin(half) < 1:
+                most = min(most, inner * np.sin(half) / (1 - np.sin(half)))
+            raise ValueError(f"corner = {c:g}: must be 0…{most:.4g} mm to fit this piece")
+
+    def covers(self, x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
+        """Whether points [mm] lie inside."""
+        (inner, outer), (first, last), c = self.r, self.phi, self.corner
+        radius = np.hypot(x, y)
+        inside = (radius >= inner) & (radius <= outer)
+        if last - first == 360:
+            return np.asarray(inside)
+        span = np.radians(last - first)
+        after = np.mod(np.arctan2(y, x) - np.radians(first), 2 * np.pi)
+        inside &= after <= span
+        for angle in (after, span - after):  # from the first side, from the last one
+            for middle, is_outer in ((outer - c, True), (inner + c, False)):
+                inside &= ~_cut(radius, angle, middle, c, is_outer)
+        return np.asarray(inside)
+
+
+def _cut(
+    radius: FloatArray, angle: FloatArray, middle: float, corner: float, is_outer: bool
+) -> NDArray[np.bool_]:
+    """Points that rounding one corner cuts off.
+
+    The corner's circle touches the side, at the distance `touch` from the axis, and the arc; its
+    centre is `middle` from the axis and `corner` from the side. `angle` is measured from the side.
+    """
+    if corner == 0:
+        return np.zeros(radius.shape, dtype=np.bool_)
+    touch = np.sqrt(middle**2 - corner**2)
+    along, across = radius * np.cos(angle), radius * np.sin(angle)
+    beyond = along > touch if is_outer else along < touch
+    within = (angle < np.arctan2(corner, touch)) & beyond
+    outside_circle = (along - touch) ** 2 + (across - corner) ** 2 > corner**2
+    return np.asarray(within & outside_circle)
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A round chamber: supply 1…3, centre and radius [mm]."""
+
+    supply: int
+    center: tuple[float, float]
+    radius: float
+
+    def __post_init__(self) -> None:
+        if not self.radius > 0:
+            raise ValueError(f"radius = {self.radius:g}: must be above 0 mm")
+
+    def covers(self, x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
+        """Whether points [mm] lie inside."""
+        cx, cy = self.center
+        return np.asarray((x - cx) ** 2 + (y - cy) ** 2 <= self.radius**2)
+
+
+Shape = RingPiece | Circle
+
+
+def rasterise(grid: PolarGrid, shapes: Sequence[Shape]) -> LabelArray:
+    """(radial, angular) element types by the element's centroid; a later shape covers an earlier."""
+    labels = np.zeros(grid.shape, dtype=np.uint8)
+    x, y = grid.centroids
+    for shape in shapes:
+        labels[shape.covers(x, y)] = shape.supply
+    return labels

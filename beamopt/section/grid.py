@@ -1,0 +1,119 @@
+"""The polar grid of equal-area elements that a cross-section is drawn on (paper, Discretization)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["FloatArray", "PolarGrid"]
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PolarGrid:
+    """A ring, or a sector of one, cut into elements of equal area.
+
+    Row i spans the radii `edges[i]`…`edges[i + 1]`, column j the angles
+    `start + [j, j + 1]·(stop − start)/angular`. Arrays over elements have the shape
+    (radial, angular).
+
+    Parameters
+    ----------
+    inner_radius, outer_radius : radii of the ring [mm].
+    radial, angular : counts of elements.
+    start, stop : angles of the sector's ends [degree]; a full ring when they are 360 apart.
+    """
+
+    inner_radius: float = 10.0
+    outer_radius: float = 25.0
+    radial: int = 128
+    angular: int = 360
+    start: float = 0.0
+    stop: float = 360.0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.inner_radius < self.outer_radius:
+            raise ValueError(
+                f"inner_radius = {self.inner_radius}: must be at least 0 and below "
+                f"outer_radius = {self.outer_radius}"
+            )
+        if self.radial < 1 or self.angular < 1:
+            raise ValueError(f"radial × angular = {self.radial} × {self.angular}: at least 1 × 1")
+        if not 0 < self.stop - self.start <= 360:
+            raise ValueError(f"stop = {self.stop}: must be 0…360 degrees above {self.start}")
+
+    @property
+    def is_full_ring(self) -> bool:
+        """Whether the last column is the first one's neighbour."""
+        return self.stop - self.start == 360
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows (radial) and columns (angular)."""
+        return self.radial, self.angular
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the whole ring or sector [mm²]."""
+        span = np.radians(self.stop - self.start)
+        return float(span * (self.outer_radius**2 - self.inner_radius**2) / 2)
+
+    @property
+    def element_area(self) -> float:
+        """Area of one element [mm²]."""
+        return self.area / (self.radial * self.angular)
+
+    @cached_property
+    def edges(self) -> FloatArray:
+        """(radial + 1,) radii between the rows [mm], so spaced that rows have equal areas."""
+        share = np.arange(self.radial + 1) / self.radial
+        squares = self.inner_radius**2 + share * (self.outer_radius**2 - self.inner_radius**2)
+        return np.asarray(np.sqrt(squares))
+
+    @cached_property
+    def angles(self) -> FloatArray:
+        """(angular + 1,) angles between the columns [rad]."""
+        return np.radians(np.linspace(self.start, self.stop, self.angular + 1))
+
+    @cached_property
+    def radial_integrals(self) -> FloatArray:
+        """(3, radial): ∫ rⁿ⁺¹ dr over each row for n = 0, 1, 2."""
+        powers = np.array([2, 3, 4])[:, None]
+        return np.asarray(np.diff(self.edges**powers, axis=1) / powers)
+
+    @cached_property
+    def angular_integrals(self) -> FloatArray:
+        """(6, angular + 1): ∫ {1, cos, sin, cos², sin², sin·cos} dφ from `start` to each edge."""
+        a = self.angles
+        double = np.sin(2 * a) / 4
+        primitive = np.stack(
+            [a, np.sin(a), -np.cos(a), a / 2 + double, a / 2 - double, np.sin(a) ** 2 / 2]
+        )
+        return np.asarray(primitive - primitive[:, :1])
+
+    @cached_property
+    def centroid_radii(self) -> FloatArray:
+        """(radial,) distance of each row's element centroids from the axis [mm]."""
+        half = np.radians(self.stop - self.start) / self.angular / 2
+        ratio = self.radial_integrals[1] / self.radial_integrals[0]
+        return np.asarray(ratio * np.sinc(half / np.pi))
+
+    @cached_property
+    def centroid_directions(self) -> FloatArray:
+        """(2, angular): cosine and sine of each column's middle angle."""
+        middle = (self.angles[:-1] + self.angles[1:]) / 2
+        return np.stack([np.cos(middle), np.sin(middle)])
+
+    @cached_property
+    def centroids(self) -> FloatArray:
+        """(2, radial, angular): x and y of the element centroids [mm]."""
+        return self.centroid_directions[:, None, :] * self.centroid_radii[None, :, None]
+
+    def columns(self, degrees: FloatArray) -> FloatArray:
+        """Angles [degree] as fractional columns; on a full ring taken round into 0…angular."""
+        column = (degrees - self.start) * self.angular / (self.stop - self.start)
+        return np.mod(column, self.angular) if self.is_full_ring else column

@@ -1,0 +1,1 @@
+"""Check a beam-optimised section as a solid: volume mesh, hyperelastic, under pressure."""
