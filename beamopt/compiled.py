@@ -20,5 +20,5 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     without re-association or contraction (the same bits on every machine and thread) and divide as
     numpy does.
     """
-    options = {"cache": True, "nogil": True, "fastmath": False, "error_model": "numpy"}
-    return cast("Callable[P, R]", numba.njit(**options)(function))
+    jitted = numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)
+    return cast("Callable[P, R]", jitted)

@@ -12,7 +12,7 @@ class InputError(ValueError):
     ----------
     where : the file (or command-line option) that holds the input, "" when there is none.
     key : the key, row or field, as a person finds it in that file ("grid.radial").
-    value : what stands there.
+    value : what stands there; None when it is too long to show, or nothing.
     allowed : what may stand there, and the way out where there is one.
     """
 
@@ -24,6 +24,8 @@ class InputError(ValueError):
         shown = repr(self.value) if isinstance(self.value, str) else str(self.value)
         if len(shown) > 60:
             shown = shown[:57] + "..."
-        said = f"{self.key} = {shown}" if self.key else shown
+        said = self.key
+        if self.value is not None:
+            said = f"{self.key} = {shown}" if self.key else shown
         parts = [part for part in (self.where, said, self.allowed) if part]
         return " ".join(": ".join(parts).split())

@@ -68,7 +68,7 @@ HEXAHEDRON_EDGES: NDArray[np.int64] = np.array(
         )
     ]
 )
-"""(12, 3) the hexahedron's curved edges: end, middle, end, as indices in `pressure_grid`'s order."""
+"""(12, 3) the hexahedron's curved edges (end, middle, end) in `pressure_grid`'s order."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,7 +36,7 @@ def arc_centreline(strains: FloatArray, stations: FloatArray) -> FloatArray:
     height = np.sinc(2 * half)
     sideways = stations / 2 * np.sinc(half) ** 2  # (1 − cos θ)/θ² · s, without cancellation
     along = (1 + stretch) * stations
-    return np.stack([along * sideways * k2, -along * sideways * k1, along * height], axis=-1)
+    return np.stack([along * sideways * k2, along * sideways * (0 - k1), along * height], axis=-1)
 
 
 def arc_tip_jacobian(strains: FloatArray, length: float) -> FloatArray:

@@ -82,9 +82,9 @@ class FeaturePoints:
         """The same positions with other types."""
         return FeaturePoints(self.x, self.y, types)
 
-    def taking(self, own: NDArray[np.bool_], other: FeaturePoints, theirs: NDArray[np.bool_]) -> (
-        FeaturePoints
-    ):
+    def taking(
+        self, own: NDArray[np.bool_], other: FeaturePoints, theirs: NDArray[np.bool_]
+    ) -> FeaturePoints:
         """The points `own` of these, followed by the points `theirs` of `other`."""
         pairs = ((self.x, other.x), (self.y, other.y), (self.type, other.type))
         return FeaturePoints(*(np.concatenate([a[own], b[theirs]]) for a, b in pairs))

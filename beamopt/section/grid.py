@@ -87,13 +87,13 @@ class PolarGrid:
 
     @cached_property
     def angular_integrals(self) -> FloatArray:
-        """(6, angular + 1): ∫ {1, cos, sin, cos², sin², sin·cos} dφ from `start` to each edge."""
+        """(angular + 1, 6): ∫ {1, cos, sin, cos², sin², sin·cos} dφ from `start` to each edge."""
         a = self.angles
         double = np.sin(2 * a) / 4
         primitive = np.stack(
-            [a, np.sin(a), -np.cos(a), a / 2 + double, a / 2 - double, np.sin(a) ** 2 / 2]
+            [a, np.sin(a), -np.cos(a), a / 2 + double, a / 2 - double, np.sin(a) ** 2 / 2], axis=1
         )
-        return np.asarray(primitive - primitive[:, :1])
+        return np.asarray(primitive - primitive[0])
 
     @cached_property
     def centroid_radii(self) -> FloatArray:

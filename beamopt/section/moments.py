@@ -76,10 +76,6 @@ def moments_of(grid: PolarGrid, labels: LabelArray) -> Moments:
     return Moments(raw)
 
 
-POWER = np.array([0, 1, 1, 2, 2, 2])
-"""Which radial integral belongs to each of {1, x, y, x², y², xy}."""
-
-
 @compiled
 def sum_moments(
     labels: NDArray[np.uint8], radial: FloatArray, angular: FloatArray, raw: FloatArray
@@ -87,15 +83,26 @@ def sum_moments(
     """Add each element's moments to `raw` (4, 6).
 
     An element's integrals are a radial one times an angular one, and the angular ones telescope
-    along a run of equal elements: only the runs' ends are visited.
+    along a run of equal elements: only the runs' ends count, and they are found without branches.
     """
     rows, columns = labels.shape
+    ends = np.empty(columns, dtype=np.int64)
     for i in range(rows):
         row = labels[i]
+        after = row[1:]
+        runs = 0
+        for j in range(columns - 1):
+            ends[runs] = j + 1
+            runs += row[j] != after[j]
+        ends[runs] = columns
+        r1, r2, r3 = radial[0, i], radial[1, i], radial[2, i]
         first = 0
-        for j in range(1, columns + 1):
-            if j == columns or row[j] != row[first]:
-                t = row[first]
-                for m in range(6):
-                    raw[t, m] += radial[POWER[m], i] * (angular[m, j] - angular[m, first])
-                first = j
+        for end in ends[: runs + 1]:
+            sums, b, a = raw[row[first]], angular[end], angular[first]
+            sums[0] += r1 * (b[0] - a[0])
+            sums[1] += r2 * (b[1] - a[1])
+            sums[2] += r2 * (b[2] - a[2])
+            sums[3] += r3 * (b[3] - a[3])
+            sums[4] += r3 * (b[4] - a[4])
+            sums[5] += r3 * (b[5] - a[5])
+            first = end

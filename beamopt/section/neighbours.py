@@ -108,7 +108,7 @@ def _lattice(px: FloatArray, py: FloatArray) -> tuple[IndexArray, IndexArray]:
 @compiled
 def _orientation(x: IndexArray, y: IndexArray, a: int, b: int, c: int) -> int:
     """Positive where a, b, c turn left; twice the area of the triangle, exact."""
-    return (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
+    return int((x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a]))
 
 
 @compiled
@@ -131,7 +131,7 @@ def _in_circle(x: IndexArray, y: IndexArray, a: int, b: int, c: int, p: int) -> 
         low += l0 * m0
     middle += low >> HALF
     high += middle >> HALF
-    return high > 0 or (high == 0 and ((middle & LOW) | (low & LOW)) != 0)
+    return bool(high > 0 or (high == 0 and ((middle & LOW) | (low & LOW)) != 0))
 
 
 @compiled
@@ -144,7 +144,7 @@ def _conflicts(vertex: IndexArray, x: IndexArray, y: IndexArray, t: int, p: int)
             if turn != 0:
                 return turn > 0
             along = (x[p] - x[a]) * (x[p] - x[b]) + (y[p] - y[a]) * (y[p] - y[b])
-            return along < 0
+            return bool(along < 0)
     return _in_circle(x, y, vertex[t, 0], vertex[t, 1], vertex[t, 2], p)
 
 

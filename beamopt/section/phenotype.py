@@ -69,7 +69,7 @@ def _measure(
     raw: FloatArray,
     edges: FloatArray,
 ) -> None:
-    labels = np.zeros((radial.shape[1], angular.shape[1] - 1), dtype=np.uint8)
+    labels = np.zeros((radial.shape[1], angular.shape[0] - 1), dtype=np.uint8)
     for k in range(raw.shape[0]):
         a, b = ends[k], ends[k + 1]
         labels[:] = 0

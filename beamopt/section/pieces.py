@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from numpy.typing import NDArray
+
 from beamopt.section.feature_points import MATERIAL, SUPPLIES
 from beamopt.section.grid import PolarGrid
 from beamopt.section.raster import LabelArray
@@ -36,7 +38,7 @@ def count_pieces(grid: PolarGrid, labels: LabelArray) -> Pieces:
     return Pieces(counts[0], (counts[1], counts[2], counts[3]))
 
 
-def _connected(mask: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], periodic: bool) -> int:
+def _connected(mask: NDArray[np.bool_], periodic: bool) -> int:
     from scipy.ndimage import label
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -48,4 +50,5 @@ def _connected(mask: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], periodic: 
     joined = (first > 0) & (last > 0)
     pairs = (np.ones(joined.sum()), (first[joined] - 1, last[joined] - 1))
     graph = coo_array(pairs, shape=(count, count))
-    return int(connected_components(graph, directed=False, return_labels=False))
+    joined_count, _ = connected_components(graph, directed=False)
+    return int(joined_count)

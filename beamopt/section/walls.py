@@ -19,28 +19,42 @@ def add_walls(labels: LabelArray, steps: int, periodic: bool) -> None:
     ring's inner and outer surface, are left as they are.
     """
     rows, columns = labels.shape
-    width = columns + 2 * steps
-    here = np.zeros((rows, width), dtype=np.uint8)
-    there = np.zeros((rows, width), dtype=np.uint8)
-    bit = np.array([0, 1, 2, 4], dtype=np.uint8)  # one bit a supply: neighbours merge by "or"
-    for i in range(rows):
-        for j in range(columns):
-            here[i, steps + j] = bit[labels[i, j]]
-        if periodic:
-            for j in range(steps):
-                here[i, j] = bit[labels[i, (j - steps) % columns]]
-                here[i, steps + columns + j] = bit[labels[i, j % columns]]
+    supplies = np.zeros((rows, columns + 2 * steps), dtype=np.uint8)
+    _as_bits(labels, steps, periodic, supplies)
+    reached = supplies.copy()
+    spread = np.empty_like(supplies)
     for _ in range(steps):
-        for i in range(rows):
-            row, up, down = here[i], here[max(i - 1, 0)], here[min(i + 1, rows - 1)]
-            reached = there[i]
-            for j in range(1, width - 1):
-                reached[j] = row[j] | up[j] | down[j] | row[j - 1] | row[j + 1]
-            reached[0] = row[0]
-            reached[width - 1] = row[width - 1]
-        here, there = there, here
+        _spread(reached, spread)
+        reached, spread = spread, reached
     for i in range(rows):
+        row = labels[i]
+        own, near = supplies[i, steps : steps + columns], reached[i, steps : steps + columns]
         for j in range(columns):
-            own = labels[i, j]
-            others = here[i, steps + j] & ~bit[own]
-            labels[i, j] = np.uint8(0) if others != 0 else own
+            row[j] = row[j] if near[j] == own[j] else np.uint8(0)
+
+
+@compiled
+def _as_bits(labels: LabelArray, pad: int, periodic: bool, bits: LabelArray) -> None:
+    """One bit a supply (0, 1, 2, 4), so that neighbours merge by "or"; columns padded round."""
+    columns = labels.shape[1]
+    for i in range(labels.shape[0]):
+        row, out = labels[i], bits[i, pad : pad + columns]
+        for j in range(columns):
+            out[j] = row[j] + (row[j] == 3)
+        if periodic:
+            for j in range(pad):
+                bits[i, j] = out[(j - pad) % columns]
+                bits[i, pad + columns + j] = out[j % columns]
+
+
+@compiled
+def _spread(bits: LabelArray, out: LabelArray) -> None:
+    """Each element gets its own bits and those of its four neighbours."""
+    rows, width = bits.shape
+    for i in range(rows):
+        row, up, down = bits[i], bits[max(i - 1, 0)], bits[min(i + 1, rows - 1)]
+        to = out[i]
+        for j in range(1, width - 1):
+            to[j] = row[j] | up[j] | down[j] | row[j - 1] | row[j + 1]
+        to[0] = row[0]
+        to[width - 1] = row[width - 1]

@@ -1,0 +1,235 @@
+"""A design file: enough to rebuild a section exactly, by this program or by another one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field, field_validator, model_validator
+
+from beamopt.errors import InputError
+from beamopt.files import json_text, write_atomic
+from beamopt.model import Count, Model, Number, parse, quantity, read_json
+from beamopt.rod.arc import arc_tips
+from beamopt.rod.response import LinearResponse, linear_response
+from beamopt.section.cross_section import CrossSection
+from beamopt.section.drawing import Circle, RingPiece, Shape
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.workspace import Workspace, workspace_of
+
+__all__ = ["Actuator", "Design", "Grid", "Levels", "load_design"]
+
+SCHEMA = "beamopt-design/1"
+MOST_ELEMENTS = 4_000_000
+
+Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
+Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2000)]
+
+
+class Grid(Model):
+    """The polar grid of equal-area elements."""
+
+    inner_radius: Number = quantity(10.0, "inner radius of the ring", "mm", 0, 1000)
+    outer_radius: Number = quantity(25.0, "outer radius of the ring", "mm", 0.5, 1000)
+    radial: Count = quantity(128, "elements along the radius", "", 4, 4096)
+    angular: Count = quantity(360, "elements around", "", 8, 16384)
+    start: Number = quantity(0.0, "angle at which a sector starts", "degrees", -360, 360)
+    stop: Number = quantity(
+        360.0, "angle at which it ends; 360 more is a ring", "degrees", -360, 720
+    )
+
+    @model_validator(mode="after")
+    def _is_a_ring(self) -> Grid:
+        if self.radial * self.angular > MOST_ELEMENTS:
+            raise ValueError(f"radial × angular may be at most {MOST_ELEMENTS:,} elements")
+        self.build()
+        return self
+
+    def build(self) -> PolarGrid:
+        """The grid that the section floor works on."""
+        return PolarGrid(**self.model_dump())
+
+
+class Actuator(Model):
+    """The extruded body and its material."""
+
+    length: Number = quantity(100.0, "undeformed length H", "mm", 5, 5000)
+    youngs_modulus: Number = quantity(300.0, "Young's modulus E", "kPa", 5, 50_000)
+    shear_modulus: Number = quantity(100.0, "shear modulus G", "kPa", 1, 50_000)
+
+
+def _ascending(levels: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not levels[0] < levels[1] < levels[2]:
+        raise ValueError("three pressures in kPa, ascending")
+    return levels
+
+
+Levels = Annotated[tuple[Pressure, Pressure, Pressure], AfterValidator(_ascending)]
+"""The three levels [kPa] that each supply takes in the workspace's 27 combinations."""
+
+
+class Points(Model):
+    """Voronoi feature points [mm]; type 0 is material, 1…3 a supply."""
+
+    x: list[Position]
+    y: list[Position]
+    type: list[Annotated[int, Field(strict=True, ge=0, le=3)]]
+
+    @model_validator(mode="after")
+    def _same_length(self) -> Points:
+        if not len(self.x) == len(self.y) == len(self.type):
+            counts = f"{len(self.x)}, {len(self.y)}, {len(self.type)}"
+            raise ValueError(f"x, y, type have {counts} entries; all must have the same")
+        return self
+
+
+class DrawnChamber(Model):
+    """Either a piece of a ring (r, phi, corner) or a circle (center, radius)."""
+
+    supply: Count = quantity(..., "pressure supply of the chamber", "", 1, 3)
+    r: tuple[Position, Position] | None = quantity(None, "inner and outer radius", "mm")
+    phi: tuple[Position, Position] | None = quantity(None, "first and last angle", "degrees")
+    corner: Number | None = quantity(None, "radius of the rounded corners", "mm", 0, 1000)
+    center: tuple[Position, Position] | None = quantity(None, "centre of a circle", "mm")
+    radius: Number | None = quantity(None, "radius of a circle", "mm", 0, 1000)
+
+    @model_validator(mode="after")
+    def _is_one_shape(self) -> DrawnChamber:
+        self.build()
+        return self
+
+    def build(self) -> Shape:
+        """The shape that the section floor rasterises."""
+        given = self.model_fields_set - {"supply"}
+        if self.r and self.phi and given <= {"r", "phi", "corner"}:
+            return RingPiece(self.supply, self.r, self.phi, self.corner or 0.0)
+        if self.center and self.radius and given <= {"center", "radius"}:
+            return Circle(self.supply, self.center, self.radius)
+        raise ValueError("a chamber has either r and phi (and corner), or center and radius")
+
+
+class Seal(Model):
+    """Skin and walls in mm; this version builds unsealed sections only."""
+
+    skin: Number = quantity(0.0, "skin on the ring's surfaces (0: unsealed)", "mm")
+    wall: Number = quantity(0.0, "least wall between chambers", "mm")
+    islands: Literal["keep", "remove"] = quantity("keep", "what happens to islands of material")
+
+    @model_validator(mode="after")
+    def _is_unsealed(self) -> Seal:
+        if self.skin != 0 or self.wall != 0 or self.islands != "keep":
+            raise ValueError(
+                'skin 0, wall 0, islands "keep": this version builds no sealed section'
+            )
+        return self
+
+
+class Design(Model):
+    """A section, the actuator that it is extruded to, and its pressure levels.
+
+    Exactly one of `feature_points` and `drawing` says what the section is.
+    """
+
+    schema_: Literal["beamopt-design/1"] = Field(alias="schema")
+    grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
+    feature_points: Points | None = quantity(None, "x, y, type of every feature point")
+    drawing: list[DrawnChamber] | None = quantity(None, "a list of drawn chambers")
+    wall_elements: Count = quantity(..., "elements of a wall between supplies, even", "", 0, 64)
+    seal: Seal = quantity(..., "skin, wall, islands")
+    actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
+    pressures: Levels = quantity(..., "three levels, ascending", "kPa")
+    notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
+
+    @field_validator("wall_elements")
+    @classmethod
+    def _even(cls, count: int) -> int:
+        if count % 2:
+            raise ValueError("an even number: half of a wall lies on each side of a boundary")
+        return count
+
+    @model_validator(mode="after")
+    def _one_section(self) -> Design:
+        if (self.feature_points is None) == (self.drawing is None):
+            raise ValueError("exactly one of feature_points and drawing must be given")
+        return self
+
+    @classmethod
+    def of_points(
+        cls,
+        points: FeaturePoints,
+        *,
+        grid: Grid,
+        wall_elements: int,
+        actuator: Actuator,
+        levels: tuple[float, float, float],
+        notes: Mapping[str, Any] | None = None,
+    ) -> Design:
+        """The design whose section is the Voronoi section of `points`."""
+        return cls(
+            schema="beamopt-design/1",
+            grid=grid,
+            feature_points=Points(
+                x=points.x.tolist(), y=points.y.tolist(), type=points.type.tolist()
+            ),
+            wall_elements=wall_elements,
+            seal=Seal(),
+            actuator=actuator,
+            pressures=levels,
+            notes=dict(notes or {}),
+        )
+
+    @cached_property
+    def section(self) -> CrossSection:
+        """The section, rebuilt from its feature points or its drawing."""
+        grid = self.grid.build()
+        if self.feature_points is not None:
+            return CrossSection.from_points(
+                grid, FeaturePoints(**self.feature_points.model_dump()), self.wall_elements
+            )
+        shapes = [chamber.build() for chamber in self.drawing or []]
+        return CrossSection.from_drawing(grid, shapes, self.wall_elements)
+
+    @cached_property
+    def response(self) -> LinearResponse:
+        """What pressure does to the rod of this section."""
+        return linear_response(self.section.moments, self.actuator.youngs_modulus)
+
+    @cached_property
+    def workspace(self) -> Workspace:
+        """The 27 tips at the design's pressure levels."""
+        return workspace_of(self.response, self.actuator.length, self.pressures)
+
+    def tips(self, pressures: FloatArray) -> FloatArray:
+        """Tips (n, 3) [mm] at pressures (n, 3) [kPa]."""
+        return arc_tips(self.response.strains(np.asarray(pressures)), self.actuator.length)
+
+    def json(self) -> str:  # type: ignore[override]  # pydantic's own `json` is deprecated
+        """The design file's text."""
+        return json_text(self.model_dump(by_alias=True, exclude_defaults=False, exclude_none=True))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the design file; a kill never leaves half of it."""
+        write_atomic(Path(path), self.json())
+        return Path(path)
+
+
+def load_design(path: str | Path) -> Design:
+    """Read a design file.
+
+    Raises
+    ------
+    InputError : the file, the key and what is allowed there.
+    """
+    file = Path(path)
+    data = read_json(file)
+    schema = data.get("schema")
+    if schema != SCHEMA:
+        raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
+    design = parse(Design, data, file)
+    if not design.section.moments.area > 0:
+        raise InputError(file, "", "a section without material", "some material must be left")
+    return design

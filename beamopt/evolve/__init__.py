@@ -1,0 +1,1 @@
+"""The paper's genetic algorithm: recombination, selection, mutation, and its journal."""

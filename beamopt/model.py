@@ -1,0 +1,169 @@
+"""The base of what files hold: every key has a unit, a range and a line that explains it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
+
+from beamopt.errors import InputError
+
+__all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity", "read_json", "read_text"]
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+"""A finite number; text and booleans are refused."""
+
+Count = Annotated[int, Field(strict=True)]
+"""A whole number; text, booleans and fractions are refused."""
+
+
+class Model(BaseModel):
+    """Frozen, and unknown keys are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+
+
+def quantity(
+    default: Any,
+    text: str,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+) -> Any:
+    """A key with its explanation, unit and range; `...` as the default means it must be given."""
+    return Field(
+        default, description=text, ge=low, le=high, json_schema_extra={"unit": unit} if unit else {}
+    )
+
+
+def allowed(field: FieldInfo) -> str:
+    """What a key may hold: "10 … 5000 mm", "one of fixed, range"."""
+    extra = field.json_schema_extra
+    unit = f" {extra['unit']}" if isinstance(extra, dict) and "unit" in extra else ""
+    low, high = (_bound(field, name) for name in ("ge", "le"))
+    if low is not None and high is not None:
+        return f"{low:g} … {high:g}{unit}"
+    if low is not None:
+        return f"at least {low:g}{unit}"
+    choices = [str(choice) for choice in get_args(field.annotation) if isinstance(choice, str)]
+    return f"one of {', '.join(choices)}" if choices else unit.strip()
+
+
+def _bound(field: FieldInfo, name: str) -> float | None:
+    found = [getattr(item, name) for item in field.metadata if hasattr(item, name)]
+    return found[0] if found else None
+
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def parse(model: type[M], data: Mapping[str, Any], where: object) -> M:
+    """Build `model` from a file's content.
+
+    Raises
+    ------
+    InputError : the first thing that is wrong, by file, key, value and what is allowed.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _explained(error, model, where) from None
+
+
+def _explained(error: ValidationError, model: type[BaseModel], where: object) -> InputError:
+    # an unknown key is often the misspelling of one that is then missing: name it first
+    first = min(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
+    path, holder, field = _walk(model, first["loc"])
+    value, kind, said = first["input"], first["type"], first["msg"]
+    if kind == "extra_forbidden":
+        return InputError(where, path, value, f"unknown key; known here: {_keys(holder)}")
+    if kind == "missing":
+        return InputError(where, path, None, f"must be given: {_described(field)}")
+    if kind == "value_error":
+        whole = isinstance(value, Mapping | list | tuple)
+        return InputError(where, path, None if whole else value, said.split(", ", 1)[1])
+    said = said[0].lower() + said[1:]
+    limits = allowed(field) if field is not None and path[-1] != "]" else ""
+    if limits and kind in ("greater_than_equal", "less_than_equal", "literal_error"):
+        said = f"allowed: {limits}"
+    elif limits:
+        said = f"{said}; {limits}"
+    return InputError(where, path, value, said)
+
+
+def _walk(
+    model: type[BaseModel], location: tuple[int | str, ...]
+) -> tuple[str, type[BaseModel] | None, FieldInfo | None]:
+    """A place in a file as a person writes it, the model that holds it, and its field."""
+    path = ""
+    holder: type[BaseModel] | None = model
+    field: FieldInfo | None = None
+    for step in location:
+        if isinstance(step, int):
+            path += f"[{step}]"
+            continue
+        if field is not None:
+            holder = next(iter(_models(field.annotation)), None)
+        path += f".{step}" if path else step
+        field = _field(holder, step)
+    return path, holder, field
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _models(part)]
+
+
+def _field(holder: type[BaseModel] | None, key: str) -> FieldInfo | None:
+    if holder is None:
+        return None
+    for name, field in holder.model_fields.items():
+        if key in (name, field.alias):
+            return field
+    return None
+
+
+def _keys(holder: type[BaseModel] | None) -> str:
+    fields = holder.model_fields.items() if holder is not None else ()
+    return ", ".join(field.alias or name for name, field in fields)
+
+
+def _described(field: FieldInfo | None) -> str:
+    return (field.description or "") if field is not None else ""
+
+
+def read_text(path: Path) -> str:
+    """The text of a file.
+
+    Raises
+    ------
+    InputError : it is missing, a folder, not readable, or not text.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(path, "", error.strerror or "unreadable", "a readable file") from None
+    except UnicodeDecodeError:
+        raise InputError(path, "", "not text", "a text file in UTF-8") from None
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """The object in a JSON file.
+
+    Raises
+    ------
+    InputError : as `read_text`, or it is not one whole JSON object.
+    """
+    try:
+        data = json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise InputError(path, place, error.msg, "a whole JSON file (is it cut off?)") from None
+    if not isinstance(data, dict):
+        raise InputError(path, "", type(data).__name__, "a JSON object {…}")
+    return data

@@ -1,0 +1,236 @@
+"""A scene file: actuator, section, pressures, target and search; defaults are the paper's values."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, field_validator, model_validator
+
+from beamopt.design import Actuator, Design, Grid, Levels, load_design
+from beamopt.errors import InputError
+from beamopt.judge import Judge
+from beamopt.model import Count, Model, Number, parse, quantity, read_text
+from beamopt.section.cross_section import CrossSection
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.target import BaseFrame, Target, oddities, read_target
+from beamopt.workspace import workspace_of
+
+__all__ = ["Scene", "bundled_scenes", "load_scene"]
+
+SCHEMA = "beamopt-scene/1"
+Vector = tuple[Number, Number, Number]
+
+
+class SectionRules(Model):
+    """How a section is made from feature points."""
+
+    feature_points: Count = quantity(100, "feature points of a new section, N_f", "", 1, 10_000)
+    material_probability: Number = quantity(
+        0.5, "probability that one is material; the supplies share the rest", "", 0, 1
+    )
+    wall_elements: Count = quantity(4, "elements of a wall between supplies, even", "", 0, 64)
+
+    @field_validator("wall_elements")
+    @classmethod
+    def _even(cls, count: int) -> int:
+        if count % 2:
+            raise ValueError("an even number: half of a wall lies on each side of a boundary")
+        return count
+
+
+class Pressures(Model):
+    """What the supplies can give."""
+
+    levels: Levels = quantity((0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", "kPa")
+
+
+class TargetChoice(Model):
+    """The workspace to reach.
+
+    kind "random": that of a random section; "section": that of a design file; "workspace": a CSV
+    file with the columns p1,p2,p3,x,y,z.
+    """
+
+    kind: Literal["random", "section", "workspace"] = quantity("random", "where it comes from")
+    seed: Count = quantity(0, 'seed of the random section, for kind "random"', "", 0)
+    file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
+    base_origin: Vector = quantity((0.0, 0.0, 0.0), "the base in the table's frame", "mm")
+    base_x: Vector = quantity((1.0, 0.0, 0.0), "direction of the section's x axis in that frame")
+    base_z: Vector = quantity((0.0, 0.0, 1.0), "direction of the straight actuator in that frame")
+
+    @model_validator(mode="after")
+    def _has_its_file(self) -> TargetChoice:
+        if self.kind != "random" and self.file is None:
+            raise ValueError(f'target.file must be given for kind "{self.kind}"')
+        if self.kind == "random" and self.file is not None:
+            raise ValueError('target.file goes with kind "section" or "workspace"')
+        if self.kind != "workspace" and self.base != BaseFrame():
+            raise ValueError('base_origin, base_x, base_z go with kind "workspace"')
+        return self
+
+    @property
+    def base(self) -> BaseFrame:
+        """The actuator's base in the frame of the table."""
+        return BaseFrame(self.base_origin, self.base_x, self.base_z)
+
+
+class Search(Model):
+    """The genetic algorithm."""
+
+    population: Count = quantity(20, "individuals, N_p", "", 2, 10_000)
+    generations: Count = quantity(100, "generations, N_g", "", 0, 1_000_000)
+    crossover_probability: Number = quantity(0.8, "offspring per individual, p_c", "", 0, 10)
+    mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", "", 0, 1)
+    mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", "", 0, 1)
+    swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", "", 0, 1)
+    neighbour_weight: Number = quantity(1000.0, "weight of the second objective, λ", "", 0, 1e9)
+    recombination: Literal["fixed", "range"] = quantity("fixed", "crossover method")
+    mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
+    seed: Count = quantity(0, "seed of everything random in the search", "", 0)
+
+
+class Stop(Model):
+    """Reasons to stop before the last generation; a key that is left out never does."""
+
+    evaluations: Count | None = quantity(None, "most sections judged", "", 1)
+    seconds: Number | None = quantity(None, "most time, counted anew on --resume", "s", 0)
+    stall: Count | None = quantity(None, "generations without a lower L", "generations", 1)
+    loss: Number | None = quantity(None, "an L that is good enough", "mm²", 0)
+
+
+class Scene(Model):
+    """Everything that a search needs, as one checked and frozen object."""
+
+    schema_: Literal["beamopt-scene/1"] = Field(
+        "beamopt-scene/1", alias="schema", description="version of this file's format"
+    )
+    name: str = quantity("scene", "a short name, for titles and folders")
+    description: str = quantity("", "one sentence on what it shows")
+    actuator: Actuator = Actuator()
+    grid: Grid = Grid()
+    section: SectionRules = SectionRules()
+    pressures: Pressures = Pressures()
+    target: TargetChoice = TargetChoice()
+    search: Search = Search()
+    stop: Stop = Stop()
+
+    @field_validator("name")
+    @classmethod
+    def _names_a_folder(cls, name: str) -> str:
+        if not name or any(not (c.isalnum() or c in "-_") for c in name):
+            raise ValueError("letters, digits, - and _")
+        return name
+
+    def load_target(self) -> Target:
+        """The target workspace.
+
+        Raises
+        ------
+        InputError : its file is missing or wrong, or does not fit the scene.
+        """
+        chosen = self.target
+        if chosen.kind == "workspace":
+            path = Path(str(chosen.file))
+            return read_target(path, self.pressures.levels, self.actuator.length, chosen.base)
+        if chosen.kind == "section":
+            return self._workspace_of_design(Path(str(chosen.file)))
+        points = self.random_points(np.random.default_rng([chosen.seed]))
+        section = CrossSection.from_points(self.grid.build(), points, self.section.wall_elements)
+        design = self.design_of(points)
+        return Target(design.workspace, section)
+
+    def _workspace_of_design(self, path: Path) -> Target:
+        """A design's workspace: with its own length and material, at this scene's pressures."""
+        design = load_design(path)
+        levels = self.pressures.levels
+        workspace = workspace_of(design.response, design.actuator.length, levels)
+        warnings = oddities(workspace.tips, levels, self.actuator.length)
+        return Target(workspace, design.section, warnings)
+
+    def random_points(self, rng: np.random.Generator) -> FeaturePoints:
+        """A random genotype after this scene's rules."""
+        rules = self.section
+        return FeaturePoints.random(
+            self.grid.build(), rules.feature_points, rng, rules.material_probability
+        )
+
+    def design_of(self, points: FeaturePoints, notes: Mapping[str, Any] | None = None) -> Design:
+        """The design that `points` make in this scene."""
+        return Design.of_points(
+            points,
+            grid=self.grid,
+            wall_elements=self.section.wall_elements,
+            actuator=self.actuator,
+            levels=self.pressures.levels,
+            notes=notes,
+        )
+
+    def judge(self, target: Target) -> Judge:
+        """What candidates are judged with."""
+        return Judge(
+            grid=self.grid.build(),
+            wall_elements=self.section.wall_elements,
+            length=self.actuator.length,
+            youngs_modulus=self.actuator.youngs_modulus,
+            levels=self.pressures.levels,
+            target=target.workspace.tips,
+            neighbour_weight=self.search.neighbour_weight,
+        )
+
+
+def bundled_scenes() -> dict[str, Path]:
+    """Names and files of the scenes that come with the package."""
+    folder = Path(str(files("beamopt") / "scenes"))
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """Read a scene file, or a bundled scene by its name.
+
+    Parameters
+    ----------
+    scene : a path, or a name of `bundled_scenes`.
+    overrides : `section.key=value` texts that replace single keys, values written as in TOML.
+
+    Raises
+    ------
+    InputError : the file, the key and what is allowed there.
+    """
+    path = bundled_scenes().get(str(scene), Path(scene))
+    if not path.exists():
+        names = ", ".join(bundled_scenes())
+        raise InputError(scene, "", None, f"no such scene; a path, or one of: {names}")
+    try:
+        data = tomllib.loads(read_text(path))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(path, "", str(error), "a TOML file") from None
+    if data.get("schema", SCHEMA) != SCHEMA:
+        raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
+    for override in overrides:
+        _override(data, override)
+    read = parse(Scene, data, path)
+    if read.target.file is None:
+        return read
+    file = str((path.parent / read.target.file).resolve())
+    return read.model_copy(update={"target": read.target.model_copy(update={"file": file})})
+
+
+def _override(data: dict[str, Any], override: str) -> None:
+    key, separator, text = override.partition("=")
+    if not separator or not key.strip():
+        raise InputError("--set", "", override, "written as section.key=value")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text.strip()
+    *sections, last = key.strip().split(".")
+    for name in sections:
+        data = data.setdefault(name, {})
+        if not isinstance(data, dict):
+            raise InputError("--set", key, text, f"{name} is no section")
+    data[last] = value

@@ -1,0 +1,54 @@
+"""A scene as a commented file that names every key, its unit and what it may hold."""
+
+from __future__ import annotations
+
+import json
+from textwrap import wrap
+from typing import Any
+
+from beamopt.model import Model, allowed
+from beamopt.scene import Scene
+
+__all__ = ["scene_text"]
+
+
+def scene_text(scene: Scene, *, comments: bool = True) -> str:
+    """The TOML file of a scene; reading it gives the same scene."""
+    plain: list[str] = []
+    tables: list[str] = []
+    for name, field in Scene.model_fields.items():
+        value = getattr(scene, name)
+        if not isinstance(value, Model):
+            said = f"  # {field.description}" if comments else ""
+            plain.append(f"{field.alias or name} = {_toml(value)}{said}")
+            continue
+        tables.append("")
+        if comments:
+            text = " ".join((type(value).__doc__ or "").split())
+            tables += [f"# {line}" for line in wrap(text, 96)]
+        tables.append(f"[{name}]")
+        tables += _table(value, comments)
+    return "\n".join(plain + tables) + "\n"
+
+
+def _table(model: Model, comments: bool) -> list[str]:
+    lines = []
+    for name, field in type(model).model_fields.items():
+        value = getattr(model, name)
+        said = ""
+        if comments:
+            limits = allowed(field)
+            said = f"  # {field.description}" + (f" [{limits}]" if limits else "")
+        if value is not None:
+            lines.append(f"{name} = {_toml(value)}{said}")
+        elif comments:
+            lines.append(f"# {name} ={said}")
+    return lines
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return repr(value)
