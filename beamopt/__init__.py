@@ -1,1 +1,89 @@
-"""x"""
+"""Cross-sections of slender soft pneumatic actuators, found for a target workspace.
+
+    scene = beamopt.load_scene("hand-drawn-section")
+    result = beamopt.optimize(scene)
+    print(result.best.section.pieces, result.best.workspace.tips)
+    result.best.save("best.json")
+
+Units are mm, kPa, and so mN and mN·mm.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from beamopt.bundled import bundled_scenes
+    from beamopt.design import Design, load_design
+    from beamopt.errors import InputError
+    from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+    from beamopt.evolve.stopping import StopReason
+    from beamopt.judge import Judge, Status, Verdict
+    from beamopt.optimize import optimize
+    from beamopt.plot.figures import design_figure
+    from beamopt.result import Optimisation
+    from beamopt.rod.response import LinearResponse, linear_response
+    from beamopt.scene import Scene, load_scene
+    from beamopt.section.cross_section import CrossSection
+    from beamopt.section.feature_points import FeaturePoints
+    from beamopt.section.grid import PolarGrid
+    from beamopt.study.run import study
+    from beamopt.target import Target
+    from beamopt.workspace import Workspace
+
+_HOMES = {
+    "beamopt.bundled": ("bundled_scenes",),
+    "beamopt.design": ("Design", "load_design"),
+    "beamopt.errors": ("InputError",),
+    "beamopt.evolve.algorithm": ("Generation", "GeneticAlgorithm"),
+    "beamopt.evolve.stopping": ("StopReason",),
+    "beamopt.judge": ("Judge", "Status", "Verdict"),
+    "beamopt.optimize": ("optimize",),
+    "beamopt.plot.figures": ("design_figure",),
+    "beamopt.result": ("Optimisation",),
+    "beamopt.rod.response": ("LinearResponse", "linear_response"),
+    "beamopt.scene": ("Scene", "load_scene"),
+    "beamopt.section.cross_section": ("CrossSection",),
+    "beamopt.section.feature_points": ("FeaturePoints",),
+    "beamopt.section.grid": ("PolarGrid",),
+    "beamopt.study.run": ("study",),
+    "beamopt.target": ("Target",),
+    "beamopt.workspace": ("Workspace",),
+}
+
+__all__ = [
+    "CrossSection",
+    "Design",
+    "FeaturePoints",
+    "Generation",
+    "GeneticAlgorithm",
+    "InputError",
+    "Judge",
+    "LinearResponse",
+    "Optimisation",
+    "PolarGrid",
+    "Scene",
+    "Status",
+    "StopReason",
+    "Target",
+    "Verdict",
+    "Workspace",
+    "bundled_scenes",
+    "design_figure",
+    "linear_response",
+    "load_design",
+    "load_scene",
+    "optimize",
+    "study",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used: the command line starts without numerics."""
+    for home, names in _HOMES.items():
+        if name in names:
+            value = getattr(import_module(home), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module 'beamopt' has no attribute {name!r}")

@@ -223,6 +223,7 @@ def load_design(path: str | Path) -> Design:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
+
     """
     file = Path(path)
     data = read_json(file)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import Enum
+from itertools import pairwise
 
 import numpy as np
 
@@ -57,6 +58,7 @@ class Judge:
     levels : the three pressure levels [kPa].
     target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
     neighbour_weight : λ of the second objective.
+
     """
 
     grid: PolarGrid
@@ -106,5 +108,5 @@ def judge_all(
     if executor is None or workers <= 1 or len(candidates) < 2 * workers:
         return judge(candidates)
     bounds = np.linspace(0, len(candidates), workers + 1).astype(int)
-    parts = [candidates[a:b] for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    parts = [candidates[a:b] for a, b in pairwise(bounds)]
     return [verdict for part in executor.map(judge, parts) for verdict in part]

@@ -67,6 +67,7 @@ def parse(model: type[M], data: Mapping[str, Any], where: object) -> M:
     Raises
     ------
     InputError : the first thing that is wrong, by file, key, value and what is allowed.
+
     """
     try:
         return model.model_validate(data)
@@ -143,6 +144,7 @@ def read_text(path: Path) -> str:
     Raises
     ------
     InputError : it is missing, a folder, not readable, or not text.
+
     """
     try:
         return path.read_text(encoding="utf-8")
@@ -158,6 +160,7 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError : as `read_text`, or it is not one whole JSON object.
+
     """
     try:
         data = json.loads(read_text(path))

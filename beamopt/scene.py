@@ -1,16 +1,16 @@
-"""A scene file: actuator, section, pressures, target and search; defaults are the paper's values."""
+"""A scene file: actuator, section, pressures, target, search; defaults are the paper's values."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
+from beamopt.bundled import bundled_scenes
 from beamopt.design import Actuator, Design, Grid, Levels, load_design
 from beamopt.errors import InputError
 from beamopt.judge import Judge
@@ -20,7 +20,7 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.target import BaseFrame, Target, oddities, read_target
 from beamopt.workspace import workspace_of
 
-__all__ = ["Scene", "bundled_scenes", "load_scene"]
+__all__ = ["Scene", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 Vector = tuple[Number, Number, Number]
@@ -132,6 +132,7 @@ class Scene(Model):
         Raises
         ------
         InputError : its file is missing or wrong, or does not fit the scene.
+
         """
         chosen = self.target
         if chosen.kind == "workspace":
@@ -183,12 +184,6 @@ class Scene(Model):
         )
 
 
-def bundled_scenes() -> dict[str, Path]:
-    """Names and files of the scenes that come with the package."""
-    folder = Path(str(files("beamopt") / "scenes"))
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
-
-
 def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """Read a scene file, or a bundled scene by its name.
 
@@ -200,6 +195,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
+
     """
     path = bundled_scenes().get(str(scene), Path(scene))
     if not path.exists():

@@ -43,6 +43,7 @@ class BaseFrame:
     Raises
     ------
     ValueError : a zero vector, or x and z not perpendicular.
+
     """
 
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -81,6 +82,7 @@ def read_target(
     ------
     InputError : a column, row or combination is missing, doubled, not a number, or the positions
         can not be mm.
+
     """
     rows = _rows(path)
     tips = np.full((27, 3), np.nan)
@@ -103,7 +105,7 @@ def read_target(
             path,
             f"{len(found)} of 27 pressure combinations",
             None,
-            f"every combination of {_listed(levels)} kPa needs a row; {_combination(absent)} has none",
+            f"{_combination(absent)} has none; every combination of {_listed(levels)} needs a row",
         )
     tips = (base or BaseFrame()).to_local(tips)
     _check_scale(path, tips, length)

@@ -103,6 +103,7 @@ class GeneticAlgorithm:
         Raises
         ------
         ValueError : not as many verdicts as candidates.
+
         """
         judged = [Individual(p, v) for p, v in zip(self._pending, verdicts, strict=True)]
         self.evaluations += len(judged)

@@ -25,6 +25,7 @@ def arc_tips(strains: FloatArray, length: float) -> FloatArray:
     Returns
     -------
     (…, 3) x, y, z from the base's material centroid, along the grid's axes and the rod's [mm].
+
     """
     return arc_centreline(strains, np.array([length]))[..., 0, :]
 

@@ -56,6 +56,7 @@ def linear_response(moments: Moments, youngs_modulus: float) -> LinearResponse:
     Returns
     -------
     LinearResponse : with a matrix (…, 3, 3), NaN for a section without material.
+
     """
     (i11, i12), (_, i22) = np.moveaxis(moments.second_moments, (-2, -1), (0, 1))
     sx, sy = np.moveaxis(moments.chamber_first_moments, -1, 0)

@@ -28,6 +28,7 @@ class RingPiece:
     Raises
     ------
     ValueError : radii or angles out of order, or corners that do not fit.
+
     """
 
     supply: int
@@ -41,7 +42,7 @@ class RingPiece:
             raise ValueError(f"r = [{inner:g}, {outer:g}]: two radii in mm, the smaller one first")
         if not 0 < last - first <= 360:
             raise ValueError(
-                f"phi = [{first:g}, {last:g}]: two angles in degrees, the second 0…360 above the first"
+                f"phi = [{first:g}, {last:g}]: two angles in degrees, the second up to 360 above"
             )
         if last - first == 360 or c == 0:
             return
@@ -109,7 +110,7 @@ Shape = RingPiece | Circle
 
 
 def rasterise(grid: PolarGrid, shapes: Sequence[Shape]) -> LabelArray:
-    """(radial, angular) element types by the element's centroid; a later shape covers an earlier."""
+    """(radial, angular) types of the elements, by centroid; a later shape covers an earlier."""
     labels = np.zeros(grid.shape, dtype=np.uint8)
     x, y = grid.centroids
     for shape in shapes:

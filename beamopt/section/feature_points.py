@@ -29,13 +29,14 @@ class FeaturePoints:
     Raises
     ------
     ValueError : lengths differ, a position is not finite, or a type is not 0…3.
+
     """
 
     x: FloatArray
     y: FloatArray
     type: NDArray[np.uint8]
 
-    def __init__(self, x: ArrayLike, y: ArrayLike, type: ArrayLike) -> None:  # noqa: A002
+    def __init__(self, x: ArrayLike, y: ArrayLike, type: ArrayLike) -> None:
         xs = np.array(x, dtype=np.float64).reshape(-1)
         ys = np.array(y, dtype=np.float64).reshape(-1)
         types = np.array(type).reshape(-1)

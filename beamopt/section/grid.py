@@ -1,4 +1,4 @@
-"""The polar grid of equal-area elements that a cross-section is drawn on (paper, Discretization)."""
+"""The polar grid of equal-area elements that a section is made of (paper, Discretization)."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ class PolarGrid:
     inner_radius, outer_radius : radii of the ring [mm].
     radial, angular : counts of elements.
     start, stop : angles of the sector's ends [degree]; a full ring when they are 360 apart.
+
     """
 
     inner_radius: float = 10.0

@@ -22,6 +22,7 @@ class Moments:
     ----------
     raw : (…, 4, 6) integrals of {1, x, y, x², y², xy} over the area of each type (0 material,
         1…3 supply) about the grid's axis [mm², mm³, mm⁴].
+
     """
 
     raw: FloatArray

@@ -32,7 +32,7 @@ BLOCK_ROWS, BLOCK_COLUMNS = 2, 3  # tiles of a block
 class Tiling(NamedTuple):
     """The grid cut into tiles of elements and blocks of tiles, so that far points drop out early.
 
-    x, y (tile rows, tile columns, SIZE) : element centroids, the last ones repeated as padding [mm].
+    x, y (tile rows, tile columns, SIZE) : element centroids, the last ones repeated [mm].
     centres (2, …), reach (…) : middle of each tile, distance to its farthest centroid [mm].
     block_centres, block_reach : the same for blocks.
     """

@@ -1,0 +1,19 @@
+"""The command line: `beamopt optimize`, `study`, `tips`, `show`, `scenes`, `init`."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run the command line; bad input is one line on standard error and exit code 2."""
+    from beamopt.provenance import THREAD_SETTINGS
+
+    for name in THREAD_SETTINGS:  # before numpy is loaded; small matrices gain nothing from threads
+        os.environ.setdefault(name, "1")
+    from beamopt.cli.application import run
+
+    sys.exit(run(sys.argv[1:]))

@@ -1,0 +1,138 @@
+"""The commands and their options; what they do is imported when they run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from beamopt.errors import InputError
+
+__all__ = ["app", "run"]
+
+app = typer.Typer(
+    name="beamopt",
+    help="Find the cross-section of a soft pneumatic actuator for a target workspace.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+SceneName = Annotated[str, typer.Argument(help="Scene file, or the name of a bundled scene.")]
+Seed = Annotated[int | None, typer.Option(min=0, help="Seed; replaces the scene's.")]
+Workers = Annotated[int, typer.Option(min=1, max=256, help="How many sections at once.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a key, as search.generations=20."),
+]
+
+
+@app.command()
+def optimize(
+    scene: SceneName,
+    out: Annotated[
+        Path | None, typer.Option(help="Run folder; runs/SCENE-SEED if left out.")
+    ] = None,
+    seed: Seed = None,
+    workers: Workers = 1,
+    resume: Resume = False,
+    overrides: Overrides = None,
+) -> None:
+    """Search for the section whose workspace is nearest to the scene's target."""
+    from beamopt.cli.optimize import optimize_command
+
+    optimize_command(scene, out, seed, workers, resume, overrides or [])
+
+
+@app.command()
+def study(
+    out: Annotated[Path, typer.Option(help="Folder of the study.")],
+    iterations: Annotated[int, typer.Option(min=1, max=1000, help="Runs of each kind.")] = 4,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the first iteration.")] = 0,
+    workers: Workers = 1,
+    resume: Resume = False,
+    overrides: Overrides = None,
+) -> None:
+    """Repeat the paper's table: three targets, four methods, several initial populations."""
+    from beamopt.cli.study import study_command
+
+    study_command(out, iterations, seed, workers, resume, overrides or [])
+
+
+@app.command()
+def tips(
+    design: Annotated[Path, typer.Argument(help="Design file.")],
+    pressures: Annotated[
+        list[str] | None,
+        typer.Option(metavar="P1,P2,P3", help="One combination in kPa; repeat for more."),
+    ] = None,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print p1,p2,p3,x,y,z with all digits.")] = (
+        False
+    ),
+) -> None:
+    """Print a design's tips in mm, at its 27 pressure combinations or at given ones."""
+    from beamopt.cli.tips import tips_command
+
+    tips_command(design, pressures or [], as_csv)
+
+
+@app.command()
+def show(
+    design: Annotated[
+        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
+    ],
+    out: Annotated[Path | None, typer.Option(help="Figure to write: .png, .svg or .pdf.")] = None,
+) -> None:
+    """Draw a design's section beside its workspace, and the section in the terminal."""
+    from beamopt.cli.show import show_command
+
+    show_command(design, out)
+
+
+@app.command()
+def scenes() -> None:
+    """List the bundled scenes."""
+    from beamopt.cli.scenes import scenes_command
+
+    scenes_command()
+
+
+@app.command()
+def init(
+    file: Annotated[Path, typer.Argument(help="Scene file to write.")],
+    scene: Annotated[str | None, typer.Option(help="Bundled scene to start from.")] = None,
+) -> None:
+    """Write a commented scene file with every key."""
+    from beamopt.cli.scenes import init_command
+
+    init_command(file, scene)
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command; returns the exit code."""
+    try:
+        app(list(arguments), standalone_mode=False)
+    except InputError as error:
+        return _complain(str(error))
+    except typer.Exit as ended:
+        return ended.exit_code
+    except (typer.Abort, KeyboardInterrupt):
+        return _complain("interrupted", code=130)
+    except BrokenPipeError:
+        return 0
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{place}{(error.strerror or str(error)).lower()}")
+    except Exception as error:
+        if hasattr(error, "format_message"):  # what the option parser refuses
+            return _complain(error.format_message())
+        raise
+    return 0
+
+
+def _complain(text: str, code: int = 2) -> int:
+    typer.echo("beamopt: " + " ".join(text.split()), err=True)
+    return code

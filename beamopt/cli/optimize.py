@@ -1,0 +1,65 @@
+"""`beamopt optimize`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from beamopt.cli.progress import console, progress_bar
+from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.stopping import StopReason
+from beamopt.optimize import optimize
+from beamopt.result import Optimisation
+from beamopt.scene import load_scene
+
+__all__ = ["optimize_command"]
+
+
+def optimize_command(
+    scene_name: str,
+    out: Path | None,
+    seed: int | None,
+    workers: int,
+    resume: bool,
+    overrides: Sequence[str],
+) -> None:
+    """Search, show progress, and say what was found and where it is."""
+    seeded = [] if seed is None else [f"search.seed={seed}"]
+    scene = load_scene(scene_name, [*overrides, *seeded])
+    folder = out or Path("runs") / f"{scene.name}-{scene.search.seed}"
+    with progress_bar("generations") as bar, ThreadPoolExecutor(workers) as executor:
+        task = bar.add_task(scene.name, total=scene.search.generations + 1, said="starting")
+
+        def show(record: Generation) -> None:
+            best = record.best_ever.verdict
+            said = f"L {best.L:.4g} mm²  T {best.T:.4g}"
+            bar.update(task, completed=record.index + 1, said=said)
+
+        result = optimize(
+            scene, folder, resume=resume, executor=executor, workers=workers, callback=show
+        )
+    _report(result, folder)
+
+
+def _report(result: Optimisation, folder: Path) -> None:
+    verdict, section = result.verdict, result.best.section
+    chambers = " + ".join(str(count) for count in section.pieces.chambers)
+    final = result.history[-1].best.verdict
+    lines = [
+        ("ended", f"{result.status.value}, {result.evaluations} sections judged"),
+        ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final.L:.6g})"),
+        ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
+        ("K", f"{verdict.K:.6g}"),
+        ("T = L + K", f"{verdict.T:.6g}"),
+        ("islands", f"{section.pieces.islands} of material; chambers per supply {chambers}"),
+        ("time", f"{result.seconds:.2f} s"),
+        ("files", f"{folder}/ (best.json, best.png, tips.csv, convergence.png, …)"),
+    ]
+    for warning in result.target.warnings:
+        console.print(f"[yellow]note[/]: {warning}")
+    console.print(f"[bold]{result.scene.name}[/], seed {result.scene.search.seed}")
+    for name, text in lines:
+        console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
+    if result.status is StopReason.INTERRUPTED:
+        console.print(f"  {'go on':<13}beamopt optimize … --out {folder} --resume", markup=False)

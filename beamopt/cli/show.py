@@ -1,0 +1,71 @@
+"""`beamopt show`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from rich.style import Style
+from rich.text import Text
+
+from beamopt.cli.progress import console
+from beamopt.design import load_design
+from beamopt.errors import InputError
+from beamopt.plot.figures import design_figure
+from beamopt.plot.section import OUTSIDE, section_pixels
+from beamopt.plot.style import TYPE_COLOURS, save_figure
+from beamopt.section.cross_section import CrossSection
+from beamopt.target import read_target
+
+__all__ = ["show_command"]
+
+ENDINGS = (".png", ".svg", ".pdf")
+WIDTH = 56  # characters of the picture in the terminal
+SYMBOLS = "·123 "
+
+
+def show_command(path: Path, out: Path | None) -> None:
+    """Draw a design, or the best design of a run over its target."""
+    file = path / "best.json" if path.is_dir() else path
+    figure_path = out or file.with_suffix(".png")
+    if figure_path.suffix not in ENDINGS:
+        raise InputError("--out", "", str(figure_path), f"must end in {', '.join(ENDINGS)}")
+    design = load_design(file)
+    beside = file.parent / "target.csv"
+    target = None
+    if path.is_dir() and beside.exists():
+        length = design.actuator.length
+        target = read_target(beside, design.pressures, length).workspace
+    title = str(design.notes.get("scene", file.stem))
+    save_figure(design_figure(design, target, title), figure_path)
+    console.print(_terminal_picture(design.section))
+    legend = Text("material ", style="dim")
+    for supply, colour in enumerate(TYPE_COLOURS[1:], 1):
+        legend.append(f" ■ supply {supply}", style=colour)
+    console.print(legend)
+    console.print(f"figure: {figure_path}", soft_wrap=True, markup=False)
+
+
+def _terminal_picture(section: CrossSection) -> Text:
+    """The section in half-height blocks; with digits where the terminal has no colour."""
+    types = section_pixels(section, WIDTH)
+    if console.color_system is None:
+        rows = types[::2]
+        return Text("\n".join("".join(SYMBOLS[kind] for kind in row).rstrip() for row in rows))
+    picture = Text()
+    for upper, lower in zip(types[::2], types[1::2], strict=True):
+        for above, below in np.column_stack([upper, lower]).tolist():
+            picture.append(*_block(above, below))
+        picture.append("\n")
+    return picture
+
+
+def _block(above: int, below: int) -> tuple[str, Style | None]:
+    """Two pixels above each other as one character."""
+    if above == below == OUTSIDE:
+        return " ", None
+    if above == OUTSIDE:
+        return "▄", Style(color=TYPE_COLOURS[below])
+    if below == OUTSIDE:
+        return "▀", Style(color=TYPE_COLOURS[above])
+    return "▀", Style(color=TYPE_COLOURS[above], bgcolor=TYPE_COLOURS[below])

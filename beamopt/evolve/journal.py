@@ -1,0 +1,146 @@
+"""The append-only journal of a search: what was judged, in order, one line a batch.
+
+A journal holds verdicts, not genotypes: those follow from the scene by asking the algorithm again,
+and a digest of each says whether they are the same. A line that a kill cut off is dropped when the
+search goes on; everything before it is taken as it stands.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+
+from beamopt.errors import InputError
+from beamopt.evolve.algorithm import GeneticAlgorithm
+from beamopt.judge import Status, Verdict
+from beamopt.section.feature_points import FeaturePoints
+
+__all__ = ["Journal"]
+
+SCHEMA = "beamopt-journal/1"
+
+
+class Journal:
+    """A journal file, open for going on; use it as a context.
+
+    Raises
+    ------
+    InputError : a whole line of the file is not what this search would have written there.
+
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._stream = path.open("ab", buffering=0)
+        self._lock()
+        self._lines = self._whole_lines()
+        if not self._lines:
+            self._append({"schema": SCHEMA})
+        elif _decoded(self._lines[0]) != {"schema": SCHEMA}:
+            raise InputError(path, "line 1", self._lines[0], f'must be {{"schema": "{SCHEMA}"}}')
+
+    def __enter__(self) -> Journal:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        os.fsync(self._stream.fileno())
+        self._stream.close()
+
+    def _lock(self) -> None:
+        """Keep a second process from writing to the same journal, where the system can."""
+        try:
+            import fcntl
+        except ImportError:
+            return
+        try:
+            fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(self._path, "", None, "another process is writing this run") from None
+
+    def _whole_lines(self) -> list[str]:
+        """The lines of the file as it stands, after cutting off a last one that has no end."""
+        content = self._path.read_bytes()
+        whole = content[: content.rfind(b"\n") + 1]
+        if len(whole) < len(content):
+            os.truncate(self._path, len(whole))
+        return whole.decode("utf-8", errors="replace").splitlines()
+
+    def replay(self, search: GeneticAlgorithm) -> Iterator[list[Verdict]]:
+        """The verdicts on record, each batch checked against what `search` asks for now."""
+        for number, line in enumerate(self._lines[1:], 2):
+            verdicts = _verdicts(line, search)
+            if verdicts is None:
+                raise InputError(
+                    self._path,
+                    f"line {number}",
+                    line,
+                    f"not what this search judged in generation {search.generation} "
+                    f"({search.stage.value}); the journal was changed, or made by another version",
+                )
+            yield verdicts
+
+    def write(self, search: GeneticAlgorithm, verdicts: Sequence[Verdict]) -> None:
+        """Append the verdicts on what `search` asks for; call it before telling them."""
+        self._append(
+            {
+                "generation": search.generation,
+                "stage": search.stage.value,
+                "judged": [
+                    _entry(points, verdict)
+                    for points, verdict in zip(search.ask(), verdicts, strict=True)
+                ],
+            }
+        )
+
+    def _append(self, record: dict[str, object]) -> None:
+        line = json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n"
+        self._stream.write(line.encode())
+
+
+def _entry(points: FeaturePoints, verdict: Verdict) -> list[object]:
+    """Digest, L and K (null when infinite), and the status where it is not `JUDGED`."""
+    losses = [value if math.isfinite(value) else None for value in (verdict.L, verdict.K)]
+    said = [] if verdict.status is Status.JUDGED else [verdict.status.name]
+    return [points.digest, *losses, *said]
+
+
+def _decoded(line: str) -> object:
+    try:
+        return json.loads(line)
+    except json.JSONDecodeError:
+        return None
+
+
+def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
+    """The verdicts in a line; None where it does not belong to what `search` asks for."""
+    record = _decoded(line)
+    place = {"generation": search.generation, "stage": search.stage.value}
+    if not isinstance(record, dict) or record.items() & place.items() != place.items():
+        return None
+    asked, judged = search.ask(), record.get("judged")
+    if not isinstance(judged, list) or len(judged) != len(asked):
+        return None
+    verdicts = []
+    for points, entry in zip(asked, judged, strict=True):
+        try:
+            digest, L, K, *status = entry
+            verdict = Verdict(
+                math.inf if L is None else float(L),
+                math.inf if K is None else float(K),
+                Status[status[0]] if status else Status.JUDGED,
+            )
+        except (TypeError, ValueError, KeyError):
+            return None
+        if digest != points.digest:
+            return None
+        verdicts.append(verdict)
+    return verdicts

@@ -1,0 +1,47 @@
+"""Why a search ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+
+from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+from beamopt.scene import Scene
+
+__all__ = ["StopReason", "why_stop"]
+
+
+class StopReason(Enum):
+    """How a search ended; the value is the text shown to people."""
+
+    GENERATIONS = "all generations done"
+    EVALUATIONS = "the evaluations allowed are used up"
+    SECONDS = "the time allowed is used up"
+    STALL = "no lower L for as many generations as allowed"
+    LOSS = "the loss asked for is reached"
+    INTERRUPTED = "interrupted; --resume goes on"
+
+
+def why_stop(
+    scene: Scene, search: GeneticAlgorithm, history: Sequence[Generation], seconds: float
+) -> StopReason | None:
+    """The reason to stop after the last generation in `history`, or None to go on.
+
+    seconds : time this call has run so far.
+    """
+    stop, last = scene.stop, history[-1]
+    if stop.loss is not None and stop.loss >= last.best_ever.verdict.L:
+        return StopReason.LOSS
+    if last.index >= scene.search.generations:
+        return StopReason.GENERATIONS
+    if stop.evaluations is not None:
+        after = last.evaluations + search.next_evaluations
+        if after > stop.evaluations:
+            return StopReason.EVALUATIONS
+    if stop.stall is not None and last.index >= stop.stall:
+        before = history[-1 - stop.stall].best_ever.verdict.L
+        if before <= last.best_ever.verdict.L:
+            return StopReason.STALL
+    if stop.seconds is not None and seconds >= stop.seconds:
+        return StopReason.SECONDS
+    return None

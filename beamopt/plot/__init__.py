@@ -1,0 +1,1 @@
+"""Figures: sections in the paper's colours, workspaces with backbones, convergence."""

@@ -1,0 +1,68 @@
+"""Whole figures, put together from the pictures of sections and workspaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamopt.design import Design
+from beamopt.plot.section import draw_section
+from beamopt.plot.style import SERIES_COLOURS, new_figure, styled
+from beamopt.plot.workspace import draw_diagonal, draw_from_above
+from beamopt.rod.arc import arc_centreline
+from beamopt.section.grid import FloatArray
+from beamopt.workspace import Workspace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["convergence_figure", "design_figure", "target_figure"]
+
+
+@styled
+def design_figure(design: Design, target: Workspace | None = None, title: str = "") -> Figure:
+    """A section beside its workspace, from above and diagonally, over the target if there is one.
+
+    Backbones are coloured by pressure: supply 1 red, 2 green, 3 blue.
+    """
+    figure = new_figure(13.0, 5.0)
+    left, middle = figure.add_subplot(131), figure.add_subplot(132)
+    right = figure.add_subplot(133, projection="3d")
+    draw_section(left, design.section, "section")
+    strains = design.response.strains(design.workspace.pressures)
+    lines = arc_centreline(strains, np.linspace(0, design.actuator.length, 41))
+    draw_from_above(middle, design.workspace, target, lines)
+    draw_diagonal(right, design.workspace, target, lines)
+    middle.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
+    if title:
+        figure.suptitle(title)
+    return figure
+
+
+@styled
+def target_figure(target: Workspace, title: str = "") -> Figure:
+    """A target that no section belongs to, from above and diagonally."""
+    figure = new_figure(9.0, 4.6)
+    draw_from_above(figure.add_subplot(121), None, target)
+    draw_diagonal(figure.add_subplot(122, projection="3d"), None, target)
+    if title:
+        figure.suptitle(title)
+    return figure
+
+
+@styled
+def convergence_figure(
+    lowest: Sequence[float], mean: FloatArray, ever: Sequence[float], title: str = ""
+) -> Figure:
+    """L over generations: lowest and mean of the population, lowest ever [mm²]."""
+    figure = new_figure(6.4, 4.0)
+    axes = figure.add_subplot()
+    axes.plot(mean, color="#999999", lw=1.0, label="mean of the population")
+    axes.plot(lowest, color=SERIES_COLOURS[0], lw=1.6, label="lowest of the population")
+    axes.plot(ever, color=SERIES_COLOURS[1], lw=1.2, ls="--", label="lowest so far")
+    axes.set(yscale="log", xlabel="generation", ylabel="loss L [mm²]", title=title)
+    axes.grid(True, which="both")
+    axes.legend()
+    return figure

@@ -1,0 +1,90 @@
+"""A cross-section as a picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.plot.style import SUPPLY_COLOURS, TYPE_COLOURS
+from beamopt.section.cross_section import CrossSection
+from beamopt.section.feature_points import SUPPLIES
+from beamopt.section.grid import PolarGrid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["draw_section", "element_at"]
+
+PIXELS = 720
+OUTSIDE = -1
+
+
+def element_at(
+    grid: PolarGrid, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """Row and column of the element under each point, and whether there is one."""
+    radius = np.hypot(x, y)
+    turned = np.mod(np.degrees(np.arctan2(y, x)) - grid.start, 360.0)
+    row = np.searchsorted(grid.edges, radius, side="right") - 1
+    column = np.floor(turned * grid.angular / (grid.stop - grid.start)).astype(np.int64)
+    inside = (row >= 0) & (row < grid.radial) & (column < grid.angular)
+    return row, column, inside
+
+
+def section_pixels(section: CrossSection, pixels: int) -> NDArray[np.int64]:
+    """(pixels, pixels) element types seen from the tip, first row at the top; −1 outside."""
+    grid = section.grid
+    centres = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * grid.outer_radius
+    x, y = np.meshgrid(centres, centres[::-1])
+    row, column, inside = element_at(grid, x, y)
+    types = np.full(x.shape, OUTSIDE, dtype=np.int64)
+    types[inside] = section.labels[row[inside], column[inside]]
+    return types
+
+
+def draw_section(axes: Axes, section: CrossSection, title: str = "") -> None:
+    """Draw a section in the paper's colours, chambers numbered by their supply."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Patch
+
+    grid = section.grid
+    outer = grid.outer_radius
+    palette = np.array([to_rgba(colour) for colour in TYPE_COLOURS] + [(1, 1, 1, 0)])
+    image = palette[section_pixels(section, PIXELS)]
+    axes.imshow(image, extent=(-outer, outer, -outer, outer), interpolation="none", zorder=1)
+    angles = np.linspace(grid.angles[0], grid.angles[-1], 361)
+    for radius in (grid.inner_radius, outer):
+        axes.plot(radius * np.cos(angles), radius * np.sin(angles), color="#404040", lw=0.8)
+    _number_chambers(axes, section)
+    cx, cy = section.moments.centroid
+    axes.plot(cx, cy, "+", color="black", ms=7, mew=1.0, zorder=3)
+    areas = section.moments.chamber_areas
+    handles = [Patch(fc=TYPE_COLOURS[0], label=f"material {section.moments.area:.0f} mm²")] + [
+        Patch(fc=colour, label=f"supply {supply}: {area:.0f} mm²")
+        for supply, colour, area in zip(SUPPLIES, SUPPLY_COLOURS, areas, strict=True)
+    ]
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
+    axes.set(aspect="equal", title=title, xlabel="x [mm]", ylabel="y [mm]")
+    axes.set(xlim=(-1.05 * outer, 1.05 * outer), ylim=(-1.05 * outer, 1.05 * outer))
+
+
+def _number_chambers(axes: Axes, section: CrossSection) -> None:
+    """Write each supply's number where its chambers are thickest, far enough apart."""
+    from matplotlib.patheffects import withStroke
+    from scipy.ndimage import distance_transform_edt, label
+
+    coarse = section_pixels(section, 160)
+    scale = 2 * section.grid.outer_radius / 160
+    for supply in SUPPLIES:
+        pieces, count = label(coarse == supply)
+        for piece in range(1, count + 1):
+            depth = distance_transform_edt(np.pad(pieces == piece, 1))[1:-1, 1:-1]
+            if depth.max() * scale < 1.2:
+                continue
+            row, column = np.unravel_index(int(depth.argmax()), depth.shape)
+            x = (column + 0.5) * scale - section.grid.outer_radius
+            y = section.grid.outer_radius - (row + 0.5) * scale
+            text = axes.text(x, y, str(supply), ha="center", va="center", size=8, zorder=4)
+            text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])

@@ -1,0 +1,67 @@
+"""A workspace as a picture: the quadratic hexahedron, its nodes, the backbones that lead there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamopt.plot.style import DESIGN_COLOUR, TARGET_COLOUR, pressure_colours
+from beamopt.section.grid import FloatArray
+from beamopt.workspace import Workspace
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["draw_diagonal", "draw_from_above"]
+
+
+def draw_from_above(
+    axes: Axes,
+    workspace: Workspace | None,
+    target: Workspace | None = None,
+    backbones: FloatArray | None = None,
+) -> None:
+    """Draw the workspace seen along the actuator, x to the right and y up [mm]."""
+    _draw(axes, (0, 1), workspace, target, backbones)
+    axes.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title="from above")
+    axes.grid(True)
+
+
+def draw_diagonal(
+    axes: Any,
+    workspace: Workspace | None,
+    target: Workspace | None = None,
+    backbones: FloatArray | None = None,
+) -> None:
+    """Draw the workspace seen diagonally, on three-dimensional axes [mm]."""
+    _draw(axes, (0, 1, 2), workspace, target, backbones)
+    shown = [w.tips for w in (workspace, target) if w is not None]
+    points = np.vstack(shown + ([backbones.reshape(-1, 3)] if backbones is not None else []))
+    axes.set_box_aspect(np.maximum(np.ptp(points, axis=0), 20.0), zoom=1.1)
+    axes.view_init(elev=22, azim=-60)
+    axes.locator_params(nbins=4)
+    axes.locator_params(axis="y", nbins=3)
+    axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]", title="diagonal")
+
+
+def _draw(
+    axes: Any,
+    dims: tuple[int, ...],
+    workspace: Workspace | None,
+    target: Workspace | None,
+    backbones: FloatArray | None,
+) -> None:
+    if backbones is not None and workspace is not None:
+        for line, colour in zip(backbones, pressure_colours(workspace.pressures), strict=True):
+            axes.plot(*line[:, dims].T, color=colour, lw=0.8, alpha=0.75)
+    for space, colour, style, marker, name in (
+        (workspace, DESIGN_COLOUR, "-", "o", "design"),
+        (target, TARGET_COLOUR, (0, (4, 2)), "x", "target"),
+    ):
+        if space is None:
+            continue
+        for curve in space.edge_curves():
+            axes.plot(*curve[:, dims].T, color=colour, ls=style, lw=1.2)
+        handle = {"label": name, "color": colour, "ls": "none", "marker": marker}
+        axes.plot(*space.tips[:, dims].T, **handle, ms=3.5 if marker == "o" else 5)

@@ -1,0 +1,51 @@
+"""What a search found, and how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from beamopt.design import Design
+from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.stopping import StopReason
+from beamopt.judge import Verdict
+from beamopt.scene import Scene
+from beamopt.target import Target
+from beamopt.workspace import rms_distance
+
+__all__ = ["Optimisation"]
+
+
+@dataclass(frozen=True, eq=False)
+class Optimisation:
+    """The outcome of `optimize`.
+
+    status : why it stopped.
+    scene, target : what was searched for.
+    best : the design with the lowest L of all that were judged.
+    final : the design with the lowest L in the last population, the paper's result.
+    history : one record a generation, the initial population first.
+    seconds : time that the search took.
+    """
+
+    status: StopReason
+    scene: Scene
+    target: Target
+    best: Design
+    final: Design
+    history: tuple[Generation, ...]
+    seconds: float
+
+    @property
+    def verdict(self) -> Verdict:
+        """Losses L, K, T of the best design."""
+        return self.history[-1].best_ever.verdict
+
+    @property
+    def rms_distance(self) -> float:
+        """Root mean square distance of the best design's 27 tips from the target's [mm]."""
+        return rms_distance(self.verdict.L, 27)
+
+    @property
+    def evaluations(self) -> int:
+        """Sections judged."""
+        return self.history[-1].evaluations

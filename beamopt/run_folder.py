@@ -1,0 +1,198 @@
+"""The folder of one search: scene, target, journal, and in the end designs, tables and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.errors import InputError
+from beamopt.evolve.algorithm import Generation
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.provenance import provenance
+from beamopt.result import Optimisation
+from beamopt.scene import Scene, load_scene
+from beamopt.scene_text import scene_text
+from beamopt.section.grid import FloatArray
+from beamopt.target import Target, tips_csv
+
+__all__ = ["RunFolder"]
+
+GOES_ON = {"generations", "stop"}  # keys that may change when a run goes on
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolder:
+    """Paths of a run folder that is ready to be written to."""
+
+    path: Path
+
+    @classmethod
+    def open(cls, path: Path, scene: Scene, target: Target, *, resume: bool) -> RunFolder:
+        """Make a folder for `scene`, or with `resume` check that the one there belongs to it.
+
+        Raises
+        ------
+        InputError : the folder holds something already, or another scene, or can not be written.
+
+        """
+        folder = cls(path)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            held = [item for item in path.iterdir() if not _is_leftover(item)]
+            if held and not resume:
+                raise InputError(path, "", None, "holds files already; --resume goes on with a run")
+            if held and not (path / "scene.toml").exists():
+                names = {item.name for item in held} - {"target.csv"} - set(_source_names())
+                if names:
+                    raise InputError(path, "", None, "is no run folder: it has no scene.toml")
+            folder._start(scene, target)
+        except OSError as error:
+            reason = (error.strerror or "can not be written").lower()
+            raise InputError(
+                path, "", None, f"{reason}; name a folder that can be written"
+            ) from None
+        return folder
+
+    @property
+    def journal(self) -> Path:
+        """The append-only journal."""
+        return self.path / "journal.jsonl"
+
+    def _start(self, scene: Scene, target: Target) -> None:
+        for leftover in filter(_is_leftover, self.path.iterdir()):
+            leftover.unlink(missing_ok=True)
+        kept, source = self._scene_to_keep(scene)
+        if (self.path / "scene.toml").exists():
+            self._check_same(kept, source)
+        if source is not None:
+            write_atomic(self.path / str(kept.target.file), source)
+        pressures = target.workspace.pressures
+        write_atomic(self.path / "target.csv", tips_csv(pressures, target.workspace.tips))
+        write_atomic(self.path / "scene.toml", scene_text(kept))
+
+    def _scene_to_keep(self, scene: Scene) -> tuple[Scene, bytes | None]:
+        """The scene with its target's file named as it is kept here, and that file's content."""
+        if scene.target.file is None:
+            return scene, None
+        source = Path(scene.target.file)
+        name = f"target-source{source.suffix}"
+        target = scene.target.model_copy(update={"file": name})
+        return scene.model_copy(update={"target": target}), source.read_bytes()
+
+    def _check_same(self, scene: Scene, source: bytes | None) -> None:
+        """Refuse to go on with another scene's run, naming the first key that differs."""
+        there = self.path / "scene.toml"
+        old = load_scene(there).model_dump(by_alias=True)
+        new = scene.model_dump(by_alias=True)
+        if old["target"]["file"] is not None:
+            old["target"]["file"] = Path(old["target"]["file"]).name
+        for key, before, now in _differences(old, new):
+            raise InputError(there, key, before, f"the run to go on with; now asked for: {now}")
+        kept = self.path / str(scene.target.file)
+        if source is not None and kept.exists() and kept.read_bytes() != source:
+            raise InputError(kept, "", None, "differs from the file that the scene names now")
+
+    def write_result(self, result: Optimisation, *, figures: bool = True) -> None:
+        """Write designs, tables and figures; each whole or not at all."""
+        write_atomic(self.path / "history.csv", history_csv(result.history))
+        write_atomic(self.path / "tips.csv", _distances_csv(result))
+        result.best.save(self.path / "best.json")
+        result.final.save(self.path / "final.json")
+        write_atomic(self.path / "summary.json", json_text(summary(result)))
+        if figures:
+            self._draw(result)
+        timing = [
+            ("search", result.seconds, "s"),
+            ("evaluation", result.seconds / result.evaluations, "s"),
+        ]
+        write_atomic(self.path / "timing.csv", csv_text("what,value,unit", timing))
+        made = {"seed": result.scene.search.seed, **provenance()}
+        write_atomic(self.path / "provenance.json", json_text(made))
+
+    def _draw(self, result: Optimisation) -> None:
+        from beamopt.plot.figures import convergence_figure, design_figure
+        from beamopt.plot.style import save_figure
+
+        title = f"{result.scene.name}: L = {result.verdict.L:.4g} mm²"
+        lowest = [record.best.verdict.L for record in result.history]
+        ever = [record.best_ever.verdict.L for record in result.history]
+        mean = np.array([np.mean(_losses(record)) for record in result.history])
+        for name, figure in (
+            ("best", design_figure(result.best, result.target.workspace, title)),
+            ("convergence", convergence_figure(lowest, mean, ever, title)),
+        ):
+            for ending in ("svg", "png"):
+                save_figure(figure, self.path / f"{name}.{ending}")
+
+
+def summary(result: Optimisation) -> dict[str, Any]:
+    """How a search ended and what it found, without times."""
+    pieces = result.best.section.pieces
+    final = result.history[-1].best.verdict
+    return {
+        "status": result.status.value,
+        "scene": result.scene.name,
+        "seed": result.scene.search.seed,
+        "generations": result.history[-1].index,
+        "evaluations": result.evaluations,
+        "best": _losses_of(result.verdict.L, result.verdict.K)
+        | {
+            "rms_distance": result.rms_distance,
+            "islands": pieces.islands,
+            "chambers": list(pieces.chambers),
+        },
+        "final": _losses_of(final.L, final.K),
+        "warnings": list(result.target.warnings),
+    }
+
+
+def _losses_of(L: float, K: float) -> dict[str, Any]:
+    return {"L": L, "K": K, "T": L + K}
+
+
+def history_csv(history: tuple[Generation, ...]) -> str:
+    """L [mm²] of each generation's population and of the best so far, with that one's K."""
+    header = "generation,evaluations,lowest_L,mean_L,highest_L,lowest_T,best_ever_L,best_ever_K"
+    rows = []
+    for record in history:
+        losses = _losses(record)
+        lowest_T = min(one.verdict.T for one in record.population)
+        ever = record.best_ever.verdict
+        spread = (float(losses.min()), float(losses.mean()), float(losses.max()))
+        rows.append((record.index, record.evaluations, *spread, lowest_T, ever.L, ever.K))
+    return csv_text(header, rows)
+
+
+def _losses(record: Generation) -> FloatArray:
+    return np.array([one.verdict.L for one in record.population])
+
+
+def _distances_csv(result: Optimisation) -> str:
+    """The best design's tips, the target's, and the distance between them."""
+    space, wanted = result.best.workspace, result.target.workspace.tips
+    away = np.linalg.norm(space.tips - wanted, axis=1)
+    table = np.column_stack([space.pressures, space.tips, wanted, away])
+    header = "p1,p2,p3,x,y,z,target_x,target_y,target_z,distance_mm"
+    return csv_text(header, table.tolist())
+
+
+def _source_names() -> tuple[str, ...]:
+    return ("target-source.json", "target-source.csv")
+
+
+def _is_leftover(path: Path) -> bool:
+    """Whether a kill left this file half-written under a temporary name."""
+    return path.name.startswith(".") and path.name.endswith(".tmp")
+
+
+def _differences(old: Any, new: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
+    if isinstance(old, dict) and isinstance(new, dict):
+        for name in new:
+            if name not in GOES_ON:
+                yield from _differences(old.get(name), new[name], f"{key}.{name}".lstrip("."))
+    elif old != new:
+        yield key, old, new

@@ -1,0 +1,1 @@
+"""The paper's comparison of methods: three targets, four combinations, several iterations."""

@@ -1,0 +1,68 @@
+"""What a study runs: every target, combination of methods and iteration (paper, Results)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from beamopt.scene import Scene, load_scene
+
+__all__ = ["COMBINATIONS", "TARGETS", "Plan", "Run"]
+
+TARGETS = ("random-section", "hand-drawn-section", "hand-drawn-workspace")
+COMBINATIONS = {
+    "FD": ("fixed", "direct"),
+    "FW": ("fixed", "weighted"),
+    "RD": ("range", "direct"),
+    "RW": ("range", "weighted"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One search of a study.
+
+    Its scene is a bundled one with two methods and a seed, so that any single run can be repeated
+    with `beamopt optimize`. The initial population follows from the seed alone: it differs between
+    iterations and is the same for every combination and target.
+    """
+
+    target: str
+    combination: str
+    iteration: int
+    seed: int
+    overrides: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Folder of the run."""
+        return f"{self.target}-{self.combination}-{self.iteration}"
+
+    def scene(self) -> Scene:
+        """The scene that this run searches."""
+        recombination, mutation = COMBINATIONS[self.combination]
+        methods = (f'search.recombination="{recombination}"', f'search.mutation="{mutation}"')
+        return load_scene(self.target, [*self.overrides, *methods, f"search.seed={self.seed}"])
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """All runs of a study.
+
+    iterations : runs of each target and combination.
+    seed : seed of the first iteration; the others count up from it.
+    overrides : keys replaced in every scene.
+    """
+
+    iterations: int = 4
+    seed: int = 0
+    overrides: tuple[str, ...] = ()
+
+    def runs(self) -> Sequence[Run]:
+        """Every run, in the order of the table."""
+        return [
+            Run(target, combination, iteration, self.seed + iteration - 1, self.overrides)
+            for target in TARGETS
+            for combination in COMBINATIONS
+            for iteration in range(1, self.iterations + 1)
+        ]

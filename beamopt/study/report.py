@@ -1,0 +1,121 @@
+"""What a study leaves to read: table, comparison, convergence, best and worst designs."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from shutil import copyfile
+
+import numpy as np
+
+from beamopt.design import load_design
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.plot.study import case_figure, losses_figure
+from beamopt.plot.style import save_figure
+from beamopt.provenance import provenance
+from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
+from beamopt.study.table import (
+    TITLES,
+    Outcome,
+    comparison_markdown,
+    table_csv,
+    table_markdown,
+)
+
+__all__ = ["write_report"]
+
+FIGURE_ENDINGS = ("svg", "png")
+
+
+def write_report(
+    folder: Path, outcomes: Sequence[Outcome], plan: Plan, seconds: float, workers: int
+) -> None:
+    """Write everything beside the run folders; each file whole or not at all."""
+    write_atomic(folder / "table.csv", table_csv(outcomes))
+    write_atomic(folder / "table.md", _markdown(outcomes, plan))
+    write_atomic(folder / "convergence.csv", _convergence_csv(outcomes))
+    write_atomic(folder / "best_ever.csv", _best_ever_csv(outcomes))
+    _save(losses_figure(_spreads(outcomes), TITLES), folder, "convergence")
+    for target in TARGETS:
+        _write_case(folder, [one for one in outcomes if one.run.target == target])
+    rows = [("study", seconds, "s"), ("workers", workers, "1")]
+    rows += [(one.run.name, one.seconds, "s") for one in outcomes]
+    write_atomic(folder / "timing.csv", csv_text("what,value,unit", rows))
+    write_atomic(folder / "provenance.json", json_text({"seed": plan.seed, **provenance()}))
+
+
+def _write_case(folder: Path, outcomes: Sequence[Outcome]) -> None:
+    """Best and worst of one target: designs, and a figure beside the target itself."""
+    ordered = sorted(outcomes, key=lambda one: one.final.L)
+    target = ordered[0].run.scene().load_target()
+    designs = []
+    for name, one in (("best", ordered[0]), ("worst", ordered[-1])):
+        kept = folder / f"{one.run.target}-{name}.json"
+        temporary = kept.with_name(f".{kept.name}.tmp")
+        copyfile(folder / "runs" / one.run.name / "final.json", temporary)
+        temporary.replace(kept)
+        said = f"{name}: {one.run.combination}, iteration {one.run.iteration}"
+        designs.append((f"{said}, L = {one.final.L:.4g} mm²", load_design(kept)))
+    _save(case_figure(target, designs), folder, ordered[0].run.target)
+
+
+def _save(figure: object, folder: Path, name: str) -> None:
+    for ending in FIGURE_ENDINGS:
+        save_figure(figure, folder / f"{name}.{ending}")  # type: ignore[arg-type]
+
+
+def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, np.ndarray]]:
+    """For each target and combination (3, generations + 1): min, mean, max over iterations."""
+    spreads: dict[str, dict[str, np.ndarray]] = {}
+    for target in TARGETS:
+        for combination in COMBINATIONS:
+            lines = [
+                one.lowest
+                for one in outcomes
+                if (one.run.target, one.run.combination) == (target, combination)
+            ]
+            longest = max(len(line) for line in lines)
+            # a search that stopped early keeps its last value
+            padded = np.array([[*line, *[line[-1]] * (longest - len(line))] for line in lines])
+            spread = np.stack([padded.min(axis=0), padded.mean(axis=0), padded.max(axis=0)])
+            spreads.setdefault(target, {})[combination] = spread
+    return spreads
+
+
+def _convergence_csv(outcomes: Sequence[Outcome]) -> str:
+    rows = [
+        (target, combination, generation, *(float(value) for value in values))
+        for target, lines in _spreads(outcomes).items()
+        for combination, spread in lines.items()
+        for generation, values in enumerate(spread.T)
+    ]
+    return csv_text("target,combination,generation,min_L,mean_L,max_L", rows)
+
+
+def _best_ever_csv(outcomes: Sequence[Outcome]) -> str:
+    rows = [
+        (one.run.target, one.run.combination, one.run.iteration, one.final.L, one.best_ever)
+        for one in outcomes
+    ]
+    return csv_text("target,combination,iteration,L,best_ever_L", rows)
+
+
+def _markdown(outcomes: Sequence[Outcome], plan: Plan) -> str:
+    command = f"beamopt study --iterations {plan.iterations} --seed {plan.seed}"
+    for override in plan.overrides:
+        command += f" --set {shlex.quote(override)}"
+    return f"""# Loss L of the best individual at the end of each search [mm²]
+
+Lowest L in the last population, by target, combination of methods and iteration: fixed (F) or
+range (R) recombination with direct (D) or weighted (W) mutation. Bold is the lowest of a target,
+italics the highest. Made by `{command} --out DIR`.
+
+{table_markdown(outcomes)}
+## Beside the paper
+
+Over all runs of a target. The paper's three targets are not published and ours are re-created in
+kind, so only magnitudes can be compared: the first two targets belong to a section and can be
+reached exactly, the third can not.
+
+{comparison_markdown(outcomes)}"""

@@ -1,0 +1,124 @@
+"""The paper's table of losses, with Best, Mean and Worst."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamopt.files import csv_text
+from beamopt.judge import Verdict
+from beamopt.study.plan import COMBINATIONS, TARGETS, Run
+
+__all__ = ["PAPER", "Outcome", "comparison_markdown", "table_csv", "table_markdown"]
+
+PAPER = {
+    "random-section": {"Best": 19.49, "Mean": 81.59, "Worst": 152.52},
+    "hand-drawn-section": {"Best": 15.07, "Mean": 63.66, "Worst": 135.75},
+    "hand-drawn-workspace": {"Best": 1119.73, "Mean": 1340.68, "Worst": 1693.46},
+}
+"""The paper's L [mm²] over its 16 runs a target (paper, Table 1); its targets are other ones."""
+
+TITLES = {
+    "random-section": "Random geometry",
+    "hand-drawn-section": "Specific geometry",
+    "hand-drawn-workspace": "Without geometry",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one run came to.
+
+    final : losses of the individual with the lowest L in the last population, the paper's metric.
+    best_ever : the lowest L [mm²] of all that the run judged.
+    lowest : (generations + 1,) lowest L [mm²] of each generation's population.
+    """
+
+    run: Run
+    final: Verdict
+    best_ever: float
+    evaluations: int
+    lowest: tuple[float, ...]
+    seconds: float
+
+
+SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {
+    "Best": min,
+    "Mean": lambda values: float(np.mean(values)),
+    "Worst": max,
+}
+
+
+def table_csv(outcomes: Sequence[Outcome]) -> str:
+    """`target,combination,iteration,L,K,T,evaluations`, iterations then Best, Mean, Worst of L.
+
+    K and T of the Best and Worst rows belong to that run; those of the Mean row are means.
+    """
+    rows: list[tuple[object, ...]] = []
+    for target in TARGETS:
+        for combination in COMBINATIONS:
+            mine = _of(outcomes, target, combination)
+            rows += [(target, combination, one.run.iteration, *_losses(one)) for one in mine]
+            by_loss = sorted(mine, key=lambda one: one.final.L)
+            means = [float(column) for column in np.mean([_losses(one) for one in mine], axis=0)]
+            rows.append((target, combination, "Best", *_losses(by_loss[0])))
+            rows.append((target, combination, "Mean", *means))
+            rows.append((target, combination, "Worst", *_losses(by_loss[-1])))
+    return csv_text("target,combination,iteration,L,K,T,evaluations", rows)
+
+
+def table_markdown(outcomes: Sequence[Outcome]) -> str:
+    """The table in the paper's form: an iteration a row, a target and combination a column.
+
+    The lowest Best, Mean and Worst of each target are bold, the highest in italics.
+    """
+    columns = [(target, combination) for target in TARGETS for combination in COMBINATIONS]
+    losses = {c: [one.final.L for one in _of(outcomes, *c)] for c in columns}
+    head = ["It."] + [f"{TITLES[target]} {combination}" for target, combination in columns]
+    lines = [_row(head), _row(["---"] + ["---:"] * len(columns))]
+    lines += [
+        _row([str(k + 1)] + [f"{losses[c][k]:.2f}" for c in columns])
+        for k in range(len(losses[columns[0]]))
+    ]
+    for name, summarise in SUMMARIES.items():
+        values = {c: summarise(losses[c]) for c in columns}
+        lines.append(_row([f"**{name}**"] + [_marked(c, values) for c in columns]))
+    return "\n".join(lines) + "\n"
+
+
+def comparison_markdown(outcomes: Sequence[Outcome]) -> str:
+    """L over all runs of each target, beside the paper's."""
+    lines = [_row(["Target", "Runs", *(f"{name}, here / paper" for name in SUMMARIES)])]
+    lines.append(_row(["---", "---:", *["---:"] * len(SUMMARIES)]))
+    for target in TARGETS:
+        losses = [one.final.L for one in outcomes if one.run.target == target]
+        pairs = [
+            f"{summarise(losses):.2f} / {PAPER[target][name]:.2f}"
+            for name, summarise in SUMMARIES.items()
+        ]
+        lines.append(_row([TITLES[target], str(len(losses)), *pairs]))
+    return "\n".join(lines) + "\n"
+
+
+def _of(outcomes: Sequence[Outcome], target: str, combination: str) -> list[Outcome]:
+    return [
+        one for one in outcomes if (one.run.target, one.run.combination) == (target, combination)
+    ]
+
+
+def _losses(one: Outcome) -> tuple[float, float, float, int]:
+    return one.final.L, one.final.K, one.final.T, one.evaluations
+
+
+def _row(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def _marked(column: tuple[str, str], values: dict[tuple[str, str], float]) -> str:
+    same_target = [value for (target, _), value in values.items() if target == column[0]]
+    text = f"{values[column]:.2f}"
+    if values[column] == min(same_target):
+        return f"**{text}**"
+    return f"*{text}*" if values[column] == max(same_target) else text
