@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -69,6 +70,11 @@ class Judge:
     target: FloatArray
     neighbour_weight: float
 
+    @cached_property
+    def pressures(self) -> FloatArray:
+        """(27, 3) pressure combinations [kPa]."""
+        return pressure_grid(self.levels)
+
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
         """(n, 27, 3) tips of every candidate [mm]; NaN without material."""
         return self._tips_and_ratio(candidates)[0]
@@ -87,7 +93,7 @@ class Judge:
         measured = phenotypes(self.grid, candidates, self.wall_elements)
         response = linear_response(measured.moments, self.youngs_modulus)
         with np.errstate(invalid="ignore"):
-            tips = arc_tips(response.strains(pressure_grid(self.levels)), self.length)
+            tips = arc_tips(response.strains(self.pressures), self.length)
         return tips, measured.neighbour_ratio
 
     def _verdict(self, points: FeaturePoints, L: float, K: float) -> Verdict:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -22,6 +23,8 @@ from beamopt.section.feature_points import FeaturePoints
 __all__ = ["Journal"]
 
 SCHEMA = "beamopt-journal/1"
+
+LOCK_PATIENCE = 2.0  # s; a process that was just killed may still be letting go
 
 
 class Journal:
@@ -61,10 +64,17 @@ class Journal:
             import fcntl
         except ImportError:
             return
-        try:
-            fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise InputError(self._path, "", None, "another process is writing this run") from None
+        patience = time.monotonic() + LOCK_PATIENCE
+        while True:
+            try:
+                fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                if time.monotonic() > patience:
+                    said = "another process is writing this run"
+                    raise InputError(self._path, "", None, said) from None
+                time.sleep(0.05)
+            else:
+                return
 
     def _whole_lines(self) -> list[str]:
         """The lines of the file as it stands, after cutting off a last one that has no end."""

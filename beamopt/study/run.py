@@ -6,10 +6,12 @@ import json
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
+from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +101,7 @@ def _processes(workers: int) -> Iterator[Executor]:
     before = {name: os.environ.get(name) for name in THREAD_SETTINGS}
     os.environ.update(dict.fromkeys(THREAD_SETTINGS, "1"))
     pool = ProcessPoolExecutor(
-        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts
+        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_first_process
     )
     try:
         yield pool
@@ -109,9 +111,17 @@ def _processes(workers: int) -> Iterator[Executor]:
             os.environ.pop(name) if value is None else os.environ.update({name: value})
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C goes to every process of a terminal; only the first one is to act on it."""
+def _follow_first_process() -> None:
+    """Leave Ctrl-C, which goes to every process of a terminal, to the first one; end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    first = multiprocessing.parent_process()
+    if first is not None:
+
+        def end() -> None:
+            wait([first.sentinel])
+            os._exit(1)
+
+        threading.Thread(target=end, daemon=True).start()
 
 
 def _prepare(folder: Path, plan: Plan, resume: bool) -> None:

@@ -1,0 +1,29 @@
+"""The benchmark's reference computes the same thing, so that its time means something."""
+
+import numpy as np
+
+from beamopt.judge import Judge
+from beamopt.section.cross_section import CrossSection
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import PolarGrid
+from beamopt.section.phenotype import phenotypes
+from beamopt.workspace import pressure_grid
+from tests.bench.reference import Reference
+
+
+def test_reference_agrees_with_the_kernels() -> None:
+    grid = PolarGrid()
+    reference = Reference(grid)
+    judge = Judge(grid, 4, 100.0, 300.0, (0.0, 50.0, 100.0), np.zeros((27, 3)), 1000.0)
+    for seed in range(5):
+        rng = np.random.default_rng([seed])
+        # off the element centroids: the k-d tree breaks ties at will
+        points = FeaturePoints(*rng.uniform(-25, 25, (2, 100)), rng.integers(0, 4, 100))
+        labels = CrossSection.from_points(grid, points).labels
+        np.testing.assert_array_equal(reference.labels(points), labels)
+        raw = reference.raw_moments(labels)
+        measured = phenotypes(grid, [points], 4)
+        np.testing.assert_allclose(raw, measured.moments.raw[0], rtol=1e-12, atol=1e-8)
+        assert reference.ratio(points) == measured.neighbour_ratio[0]
+        tips = reference.tips(raw, pressure_grid((0.0, 50.0, 100.0)))
+        np.testing.assert_allclose(tips, judge.tips([points])[0], rtol=1e-9, atol=1e-7)

@@ -1,0 +1,17 @@
+"""The suites by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tests.validation import arc, genotypes, resume, symmetry
+from tests.validation.check import Check
+
+__all__ = ["SUITES"]
+
+SUITES: dict[str, Callable[[bool], list[Check]]] = {
+    "arc": arc.checks,
+    "genotypes": genotypes.checks,
+    "symmetry": symmetry.checks,
+    "resume": resume.checks,
+}
