@@ -125,8 +125,7 @@ class RunFolder:
             ("best", design_figure(result.best, result.target.workspace, title)),
             ("convergence", convergence_figure(lowest, mean, ever, title)),
         ):
-            for ending in ("svg", "png"):
-                save_figure(figure, self.path / f"{name}.{ending}")
+            save_figure(figure, self.path / f"{name}.svg", self.path / f"{name}.png")
 
 
 def summary(result: Optimisation) -> dict[str, Any]:

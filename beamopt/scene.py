@@ -69,7 +69,8 @@ class TargetChoice(Model):
             raise ValueError(f'target.file must be given for kind "{self.kind}"')
         if self.kind == "random" and self.file is not None:
             raise ValueError('target.file goes with kind "section" or "workspace"')
-        if self.kind != "workspace" and self.base != BaseFrame():
+        base = self.base  # checks the directions
+        if self.kind != "workspace" and base != BaseFrame():
             raise ValueError('base_origin, base_x, base_z go with kind "workspace"')
         return self
 
@@ -204,7 +205,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     try:
         data = tomllib.loads(read_text(path))
     except tomllib.TOMLDecodeError as error:
-        raise InputError(path, "", str(error), "a TOML file") from None
+        raise InputError(path, "", None, f"no TOML file: {error}") from None
     if data.get("schema", SCHEMA) != SCHEMA:
         raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
     for override in overrides:

@@ -11,7 +11,8 @@ console = Console(highlight=False)
 
 
 def progress_bar(unit: str) -> Progress:
-    """A bar that counts `unit`s, to standard error; it leaves nothing behind."""
+    """A bar that counts `unit`s on the terminal's standard error; it leaves nothing behind."""
+    terminal = Console(stderr=True, highlight=False)
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=None),
@@ -19,6 +20,7 @@ def progress_bar(unit: str) -> Progress:
         TextColumn(unit),
         TimeRemainingColumn(compact=True),
         TextColumn("{task.fields[said]}"),
-        console=Console(stderr=True, highlight=False),
+        console=terminal,
+        disable=not terminal.is_terminal,
         transient=True,
     )

@@ -39,12 +39,17 @@ class Journal:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._stream = path.open("ab", buffering=0)
-        self._lock()
-        self._lines = self._whole_lines()
-        if not self._lines:
-            self._append({"schema": SCHEMA})
-        elif _decoded(self._lines[0]) != {"schema": SCHEMA}:
-            raise InputError(path, "line 1", self._lines[0], f'must be {{"schema": "{SCHEMA}"}}')
+        try:
+            self._lock()
+            self._lines = self._whole_lines()
+            if not self._lines:
+                self._append({"schema": SCHEMA})
+            elif _decoded(self._lines[0]) != {"schema": SCHEMA}:
+                expected = f'must be {{"schema": "{SCHEMA}"}}'
+                raise InputError(path, "line 1", self._lines[0], expected)
+        except BaseException:
+            self._stream.close()
+            raise
 
     def __enter__(self) -> Journal:
         return self
@@ -133,8 +138,9 @@ def _decoded(line: str) -> object:
 def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     """The verdicts in a line; None where it does not belong to what `search` asks for."""
     record = _decoded(line)
-    place = {"generation": search.generation, "stage": search.stage.value}
-    if not isinstance(record, dict) or record.items() & place.items() != place.items():
+    if not isinstance(record, dict):
+        return None
+    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.value):
         return None
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):

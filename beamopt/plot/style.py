@@ -74,18 +74,19 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure by its ending (.svg, .png, .pdf); the same figure gives the same bytes."""
+def save_figure(figure: Figure, *paths: Path) -> None:
+    """Write a figure by each path's ending (.svg, .png, .pdf); the same one gives the same bytes."""
     import matplotlib as mpl
 
-    metadata: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(
-        path.suffix, {}
-    )
-    stream = io.BytesIO()
+    dateless: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with mpl.rc_context(_RC):
-        figure.savefig(stream, format=path.suffix[1:], dpi=150, metadata=metadata)
-    write_atomic(path, stream.getvalue())
-    return path
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # laid out now, once for all endings
+        for path in paths:
+            stream = io.BytesIO()
+            metadata = dateless.get(path.suffix, {})
+            figure.savefig(stream, format=path.suffix[1:], dpi=150, metadata=metadata)
+            write_atomic(path, stream.getvalue())
 
 
 def pressure_colours(pressures: FloatArray) -> FloatArray:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from shutil import copyfile
 
 import numpy as np
 
-from beamopt.design import load_design
+from beamopt.design import Design, load_design
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
+from beamopt.scene import load_scene
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.table import (
     TITLES,
@@ -25,44 +25,48 @@ from beamopt.study.table import (
 
 __all__ = ["write_report"]
 
-FIGURE_ENDINGS = ("svg", "png")
-
 
 def write_report(
-    folder: Path, outcomes: Sequence[Outcome], plan: Plan, seconds: float, workers: int
+    folder: Path,
+    outcomes: Sequence[Outcome],
+    plan: Plan,
+    seconds: float,
+    workers: int,
+    *,
+    figures: bool,
 ) -> None:
     """Write everything beside the run folders; each file whole or not at all."""
     write_atomic(folder / "table.csv", table_csv(outcomes))
     write_atomic(folder / "table.md", _markdown(outcomes, plan))
     write_atomic(folder / "convergence.csv", _convergence_csv(outcomes))
     write_atomic(folder / "best_ever.csv", _best_ever_csv(outcomes))
-    _save(losses_figure(_spreads(outcomes), TITLES), folder, "convergence")
-    for target in TARGETS:
-        _write_case(folder, [one for one in outcomes if one.run.target == target])
+    cases = {target: _best_and_worst(folder, outcomes, target) for target in TARGETS}
+    if figures:
+        drawn = losses_figure(_spreads(outcomes), TITLES)
+        save_figure(drawn, folder / "convergence.svg", folder / "convergence.png")
+        for target, designs in cases.items():
+            drawn = case_figure(load_scene(target, plan.overrides).load_target(), designs)
+            save_figure(drawn, folder / f"{target}.svg", folder / f"{target}.png")
     rows = [("study", seconds, "s"), ("workers", workers, "1")]
     rows += [(one.run.name, one.seconds, "s") for one in outcomes]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", rows))
     write_atomic(folder / "provenance.json", json_text({"seed": plan.seed, **provenance()}))
 
 
-def _write_case(folder: Path, outcomes: Sequence[Outcome]) -> None:
-    """Best and worst of one target: designs, and a figure beside the target itself."""
-    ordered = sorted(outcomes, key=lambda one: one.final.L)
-    target = ordered[0].run.scene().load_target()
+def _best_and_worst(
+    folder: Path, outcomes: Sequence[Outcome], target: str
+) -> list[tuple[str, Design]]:
+    """Keep the designs of a target's best and worst search; returns them with their titles."""
+    ordered = sorted(
+        (one for one in outcomes if one.run.target == target), key=lambda one: one.final.L
+    )
     designs = []
     for name, one in (("best", ordered[0]), ("worst", ordered[-1])):
-        kept = folder / f"{one.run.target}-{name}.json"
-        temporary = kept.with_name(f".{kept.name}.tmp")
-        copyfile(folder / "runs" / one.run.name / "final.json", temporary)
-        temporary.replace(kept)
+        design = load_design(folder / "runs" / one.run.name / "final.json")
+        design.save(folder / f"{target}-{name}.json")
         said = f"{name}: {one.run.combination}, iteration {one.run.iteration}"
-        designs.append((f"{said}, L = {one.final.L:.4g} mm²", load_design(kept)))
-    _save(case_figure(target, designs), folder, ordered[0].run.target)
-
-
-def _save(figure: object, folder: Path, name: str) -> None:
-    for ending in FIGURE_ENDINGS:
-        save_figure(figure, folder / f"{name}.{ending}")  # type: ignore[arg-type]
+        designs.append((f"{said}, L = {one.final.L:.4g} mm²", design))
+    return designs
 
 
 def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, np.ndarray]]:

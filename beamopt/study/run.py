@@ -36,6 +36,7 @@ def study(
     workers: int = 1,
     resume: bool = False,
     callback: Callable[[Outcome, int, int], None] | None = None,
+    figures: bool = True,
 ) -> list[Outcome]:
     """Run every search of a study and write its table, figures and designs to `out`.
 
@@ -46,6 +47,7 @@ def study(
     workers : searches at once, each in a process of its own; the result does not depend on it.
     resume : go on with the study in `out`; it may be given more iterations.
     callback : called with each outcome as it comes, how many are done, and how many there are.
+    figures : whether to draw.
 
     Returns
     -------
@@ -58,15 +60,18 @@ def study(
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
-    _prepare(folder, plan, resume)
     runs = plan.runs()
+    for run in {run.target: run for run in runs}.values():
+        run.scene().load_target()  # complains before anything is written
+    _prepare(folder, plan, resume)
     outcomes: dict[Run, Outcome] = {}
     for outcome in _outcomes(runs, folder, workers):
         outcomes[outcome.run] = outcome
         if callback is not None:
             callback(outcome, len(outcomes), len(runs))
     ordered = [outcomes[run] for run in runs]
-    write_report(folder, ordered, plan, time.perf_counter() - started, workers)
+    seconds = time.perf_counter() - started
+    write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered
 
 

@@ -42,5 +42,4 @@ def report(name: str, measured: Iterable[Measured]) -> None:
 
 def save_growth(figure: Any, name: str) -> None:
     REPORTS.mkdir(parents=True, exist_ok=True)
-    for ending in ("svg", "png"):
-        save_figure(figure, REPORTS / f"{name}.{ending}")
+    save_figure(figure, REPORTS / f"{name}.svg", REPORTS / f"{name}.png")

@@ -1,0 +1,92 @@
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from beamopt.errors import InputError
+from beamopt.evolve import journal as journal_module
+from beamopt.evolve.journal import Journal
+from beamopt.optimize import optimize
+from beamopt.scene import Scene, load_scene
+
+SCENE = load_scene("hand-drawn-section", ["search.generations=4"])
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    optimize(SCENE, folder, figures=False)
+    return (folder / "journal.jsonl").read_bytes()
+
+
+def resumed(content: bytes, folder: Path, scene: Scene = SCENE) -> bytes:
+    """The journal after going on from `content`."""
+    optimize(scene, folder, figures=False)
+    (folder / "journal.jsonl").write_bytes(content)
+    optimize(scene, folder, resume=True, figures=False)
+    return (folder / "journal.jsonl").read_bytes()
+
+
+def test_one_line_a_batch(whole: bytes) -> None:
+    header, *lines = [json.loads(line) for line in whole.splitlines()]
+    assert header == {"schema": "beamopt-journal/1"}
+    assert [line["stage"] for line in lines] == ["initial"] + ["offspring", "mutants"] * 4
+    assert [len(line["judged"]) for line in lines] == [20] + [16, 2] * 4
+
+
+@pytest.mark.parametrize("cut", [0, 1, 20, 34, 35, 36, 900, 2000, -1, -2, -200])
+def test_cut_anywhere_it_ends_in_the_same_bytes(cut: int, whole: bytes, tmp_path: Path) -> None:
+    assert resumed(whole[:cut], tmp_path / "run") == whole
+
+
+def test_only_the_cut_off_line_is_judged_again(whole: bytes, tmp_path: Path) -> None:
+    """The verdicts on record are taken as they stand, not made again."""
+    lines = whole.splitlines(keepends=True)
+    record = json.loads(lines[1])
+    record["judged"][3][1] = 0.125
+    lines[1] = (json.dumps(record, separators=(",", ":")) + "\n").encode()
+    optimize(SCENE, tmp_path / "run", figures=False)
+    (tmp_path / "run" / "journal.jsonl").write_bytes(b"".join(lines[:2]))
+    result = optimize(SCENE, tmp_path / "run", resume=True, figures=False)
+    assert result.verdict.L == 0.125
+
+
+def corrupt(whole: bytes, number: int, change: tuple[bytes, bytes]) -> bytes:
+    lines = whole.splitlines(keepends=True)
+    lines[number - 1] = lines[number - 1].replace(*change, 1)
+    return b"".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("number", "change"),
+    [
+        (1, (b"journal/1", b"journal/7")),
+        (2, (b'"generation":0', b'"generation":1')),
+        (3, (b"offspring", b"mutants")),
+        (3, (b"{", b"")),
+        (3, (b'"judged":[[', b'"judged":[')),
+        (4, (b'[["', b'[["00')),
+        (5, (b'"],', b'",')),
+        (5, (b",", b",\xff")),
+    ],
+)
+def test_a_changed_line_is_named(number: int, change: tuple[bytes, bytes], whole, tmp_path) -> None:
+    changed = corrupt(whole, number, change)
+    if changed == whole:
+        changed = corrupt(whole, number, (b"]]", b"],[]]"))
+    with pytest.raises(InputError, match=f"line {number}"):
+        resumed(changed, tmp_path / "run")
+
+
+def test_another_seed_is_another_journal(whole: bytes, tmp_path: Path) -> None:
+    other = load_scene("hand-drawn-section", ["search.generations=4", "search.seed=1"])
+    with pytest.raises(InputError, match="line 2"):
+        resumed(whole, tmp_path / "run", other)
+
+
+def test_two_writers_are_one_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_module, "LOCK_PATIENCE", 0.0)
+    path = tmp_path / "journal.jsonl"
+    with Journal(path), pytest.raises(InputError, match=re.escape("another process")):
+        Journal(path)

@@ -1,0 +1,104 @@
+"""The house rules, held by a test: which way imports go, and what is loaded when."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+MODULES = sorted((ROOT / "beamopt").rglob("*.py")) + sorted((ROOT / "femcheck").rglob("*.py"))
+
+FLOORS = [
+    [
+        "beamopt.errors",
+        "beamopt.files",
+        "beamopt.compiled",
+        "beamopt.bundled",
+        "beamopt.provenance",
+    ],
+    ["beamopt.model"],
+    ["beamopt.section"],
+    ["beamopt.rod"],
+    ["beamopt.workspace"],
+    ["beamopt.design", "beamopt.target", "beamopt.judge"],
+    ["beamopt.scene", "beamopt.scene_text"],
+    ["beamopt.evolve"],
+    ["beamopt.plot"],
+    ["beamopt.result"],
+    ["beamopt.run_folder"],
+    ["beamopt.optimize"],
+    ["beamopt.study"],
+    ["beamopt.cli"],
+    ["femcheck"],
+]
+HEAVY = {"gmsh", "skfem", "pyvista", "meshio", "femcheck", "matplotlib", "pypardiso"}
+
+
+def name_of(path: Path) -> str:
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def floor_of(module: str) -> int:
+    return next(
+        k
+        for k, floor in enumerate(FLOORS)
+        if any(module == part or module.startswith(part + ".") for part in floor)
+    )
+
+
+def imports(path: Path, top_level_only: bool) -> set[str]:
+    tree = ast.parse(path.read_text())
+    nodes = tree.body if top_level_only else list(ast.walk(tree))
+    names: set[str] = set()
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names.add(node.module)
+    return names
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_imports_go_down(path: Path) -> None:
+    module = name_of(path)
+    if module == "beamopt":
+        return  # the package's face names everything
+    for imported in imports(path, top_level_only=False):
+        if imported.startswith(("beamopt.", "femcheck")):
+            assert floor_of(imported) <= floor_of(module), f"{module} imports {imported}"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_heavy_libraries_are_imported_where_they_are_used(path: Path) -> None:
+    if name_of(path).startswith("beamopt"):
+        top = {name.partition(".")[0] for name in imports(path, top_level_only=True)}
+        assert not top & HEAVY
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_rooms_are_small_and_named(path: Path) -> None:
+    assert len(path.read_text().splitlines()) <= 300
+    assert path.stem not in {"utils", "util", "helpers", "common", "misc"}
+
+
+def test_every_public_name_is_there() -> None:
+    import beamopt
+
+    assert sorted(beamopt.__all__) == beamopt.__all__
+    for name in beamopt.__all__:
+        assert getattr(beamopt, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        beamopt.nonsense  # noqa: B018
+
+
+def test_the_optimiser_runs_without_the_mesh_libraries() -> None:
+    code = (
+        "import sys; [sys.modules.__setitem__(n, None) for n in "
+        "('gmsh', 'skfem', 'pyvista', 'meshio', 'vtk', 'pypardiso', 'femcheck')];"
+        "import beamopt; s = beamopt.load_scene('random-section', ['search.generations=1']);"
+        "print(beamopt.optimize(s).evaluations)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "38"

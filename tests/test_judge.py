@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beamopt.judge import Status, judge_all
+from beamopt.scene import load_scene
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.workspace import loss
+from tests.validation import symmetry
+
+SCENE = load_scene("hand-drawn-section")
+TARGET = SCENE.load_target()
+JUDGE = SCENE.judge(TARGET)
+
+
+@pytest.fixture(scope="module")
+def candidates() -> list[FeaturePoints]:
+    return [SCENE.random_points(np.random.default_rng([k])) for k in range(7)]
+
+
+def test_losses_are_those_of_the_design(candidates: list[FeaturePoints]) -> None:
+    for points, verdict in zip(candidates, JUDGE(candidates), strict=True):
+        tips = SCENE.design_of(points).workspace.tips
+        assert pytest.approx(loss(tips, TARGET.workspace.tips), rel=1e-12) == verdict.L
+        assert pytest.approx(verdict.L + verdict.K) == verdict.T
+
+
+def test_a_verdict_does_not_depend_on_the_batch(candidates: list[FeaturePoints]) -> None:
+    together = JUDGE(candidates)
+    assert together == [JUDGE([points])[0] for points in candidates]
+    assert together[::-1] == JUDGE(candidates[::-1])
+
+
+def test_executors_and_workers_change_nothing(candidates: list[FeaturePoints]) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(3) as executor:
+        assert judge_all(JUDGE, candidates, executor, 3) == JUDGE(candidates)
+
+
+def test_the_targets_own_section_has_no_loss() -> None:
+    scene = load_scene("random-section")
+    points = scene.random_points(np.random.default_rng([scene.target.seed]))
+    assert scene.judge(scene.load_target())([points])[0].L < 1e-18
+
+
+def test_no_feature_point_and_no_material_are_statuses() -> None:
+    none = FeaturePoints([], [], [])
+    air = FeaturePoints([15.0], [0.0], [2])
+    verdicts = JUDGE([none, air])
+    assert [v.status for v in verdicts] == [Status.NO_FEATURE_POINTS, Status.NO_MATERIAL]
+    assert all(np.inf == v.T for v in verdicts)
+
+
+def test_without_a_chamber_the_tip_stays() -> None:
+    tips = JUDGE.tips([FeaturePoints([15.0, -15.0], [0.0, 0.0], [0, 0])])
+    np.testing.assert_array_equal(tips[0], np.tile([0.0, 0.0, 100.0], (27, 1)))
+
+
+@st.composite
+def sections(draw: st.DrawFn) -> FeaturePoints:
+    """Feature points on element centroids, few enough for the sections to differ a lot."""
+    count = draw(st.integers(2, 40))
+    rows = draw(st.lists(st.integers(0, 127), min_size=count, max_size=count))
+    columns = draw(st.lists(st.integers(0, 359), min_size=count, max_size=count))
+    types = draw(st.lists(st.integers(0, 3), min_size=count - 1, max_size=count - 1))
+    x, y = symmetry.GRID.centroids[:, rows, columns]
+    return FeaturePoints(x, y, [0, *types])
+
+
+@given(sections(), st.integers(0, 359))
+def test_rotating_the_points_by_columns_rotates_the_tips(p: FeaturePoints, k: int) -> None:
+    assert symmetry.rotated(p, k)[0] < symmetry.TOLERANCE * _amplified(p)
+
+
+@given(sections())
+def test_mirroring_mirrors(p: FeaturePoints) -> None:
+    assert symmetry.mirrored(p)[0] < symmetry.TOLERANCE * _amplified(p)
+
+
+@given(sections(), st.permutations([1, 2, 3]))
+def test_permuting_supplies_permutes(p: FeaturePoints, order: list[int]) -> None:
+    assert symmetry.permuted(p, (order[0], order[1], order[2]))[0] < 1e-12 * _amplified(p)
+
+
+@given(sections())
+def test_double_stiffness_at_double_pressure_changes_nothing(p: FeaturePoints) -> None:
+    assert symmetry.stiffened(p)[0] < 1e-12 * _amplified(p)
+
+
+def _amplified(points: FeaturePoints) -> float:
+    """How much rounding a section with little material left enlarges: by its largest stretch."""
+    return max(1.0, float(np.linalg.norm(symmetry.tips(points), axis=1).max()) / 100) ** 2

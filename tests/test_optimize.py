@@ -1,0 +1,166 @@
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from beamopt.design import load_design
+from beamopt.errors import InputError
+from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.stopping import StopReason
+from beamopt.optimize import optimize
+from beamopt.scene import Scene, load_scene
+from tests.validation.resume import content
+
+SCENE = load_scene("hand-drawn-section", ["search.generations=5"])
+STUCK = ("search.crossover_probability=0", "search.mutation_probability=0")
+
+
+def test_a_run_folder_holds_what_a_person_keeps(tmp_path: Path) -> None:
+    result = optimize(SCENE, tmp_path / "run")
+    names = {path.name for path in (tmp_path / "run").iterdir()}
+    assert names == {
+        "scene.toml",
+        "target-source.json",
+        "target.csv",
+        "journal.jsonl",
+        "best.json",
+        "final.json",
+        "tips.csv",
+        "history.csv",
+        "summary.json",
+        "best.svg",
+        "best.png",
+        "convergence.svg",
+        "convergence.png",
+        "timing.csv",
+        "provenance.json",
+    }
+    best = load_design(tmp_path / "run" / "best.json")
+    assert best.section.pieces == result.best.section.pieces
+    assert load_scene(tmp_path / "run" / "scene.toml").search == SCENE.search
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["best"]["L"] == result.verdict.L
+    rows = (tmp_path / "run" / "tips.csv").read_text().splitlines()[1:]
+    away = [float(row.rpartition(",")[2]) for row in rows]
+    assert sum(d * d for d in away) == pytest.approx(result.verdict.L, rel=1e-12)
+    assert result.rms_distance == pytest.approx((result.verdict.L / 27) ** 0.5)
+
+
+def test_the_run_of_a_run_is_the_same(tmp_path: Path) -> None:
+    """A run folder's own scene, with the target that is kept there, gives the same search."""
+    first = optimize(SCENE, tmp_path / "a", figures=False)
+    again = optimize(load_scene(tmp_path / "a" / "scene.toml"), tmp_path / "b", figures=False)
+    assert again.best.json() == first.best.json()
+    assert content(tmp_path / "a") == content(tmp_path / "b")
+
+
+def test_memory_and_folder_agree_for_any_executor(tmp_path: Path) -> None:
+    plain = optimize(SCENE)
+    with ThreadPoolExecutor(2) as executor:
+        kept = optimize(SCENE, tmp_path / "run", executor=executor, workers=2, figures=False)
+    assert [r.best.verdict for r in plain.history] == [r.best.verdict for r in kept.history]
+
+
+def interrupted_at(index: int, folder: Path) -> StopReason:
+    def interrupt(record: Generation) -> None:
+        if record.index == index:
+            raise KeyboardInterrupt
+
+    return optimize(SCENE, folder, resume=True, callback=interrupt).status
+
+
+def test_interrupted_runs_are_valid_and_go_on(tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "whole")
+    assert interrupted_at(2, tmp_path / "run") is StopReason.INTERRUPTED
+    halfway = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert halfway["status"] == StopReason.INTERRUPTED.value
+    assert halfway["generations"] == 2
+    load_design(tmp_path / "run" / "best.json")
+    optimize(SCENE, tmp_path / "run", resume=True)
+    assert content(tmp_path / "run") == content(tmp_path / "whole")
+
+
+def test_a_run_can_be_made_longer(tmp_path: Path) -> None:
+    longer = load_scene("hand-drawn-section", ["search.generations=8"])
+    optimize(SCENE, tmp_path / "run", figures=False)
+    optimize(longer, tmp_path / "run", resume=True, figures=False)
+    optimize(longer, tmp_path / "whole", figures=False)
+    assert content(tmp_path / "run") == content(tmp_path / "whole")
+
+
+def test_a_finished_run_is_not_searched_again(tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "run", figures=False)
+    before = content(tmp_path / "run")
+    optimize(SCENE, tmp_path / "run", resume=True, figures=False)
+    assert content(tmp_path / "run") == before
+
+
+def test_leftovers_of_a_kill_are_cleared_away(tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "run", figures=False)
+    (tmp_path / "run" / ".best.json.123.tmp").write_text("half")
+    optimize(SCENE, tmp_path / "run", resume=True, figures=False)
+    assert not (tmp_path / "run" / ".best.json.123.tmp").exists()
+
+
+@pytest.mark.parametrize(
+    ("overrides", "named"),
+    [
+        (["search.seed=1"], "search.seed = 0"),
+        (["grid.radial=64"], "grid.radial = 128"),
+        (["search.mutation=weighted"], "search.mutation = 'direct'"),
+    ],
+)
+def test_another_scene_does_not_go_on(overrides: list[str], named: str, tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "run", figures=False)
+    before = content(tmp_path / "run")
+    with pytest.raises(InputError) as caught:
+        optimize(load_scene("hand-drawn-section", overrides), tmp_path / "run", resume=True)
+    assert named in str(caught.value)
+    assert content(tmp_path / "run") == before
+
+
+def test_a_changed_target_file_does_not_go_on(tmp_path: Path) -> None:
+    source = tmp_path / "drawn.json"
+    source.write_bytes(Path(str(SCENE.target.file)).read_bytes())
+    scene = SCENE.model_copy(
+        update={"target": SCENE.target.model_copy(update={"file": str(source)})}
+    )
+    optimize(scene, tmp_path / "run", figures=False)
+    source.write_text(source.read_text().replace("-38", "-37"))
+    with pytest.raises(InputError, match="differs from the file"):
+        optimize(scene, tmp_path / "run", resume=True)
+
+
+def test_folders_with_something_else_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("precious")
+    for resume in (False, True):
+        with pytest.raises(InputError, match=r"resume|no run folder"):
+            optimize(SCENE, tmp_path, resume=resume)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "reason", "generations"),
+    [
+        (["search.generations=3"], StopReason.GENERATIONS, 3),
+        (["search.generations=0"], StopReason.GENERATIONS, 0),
+        (["stop.evaluations=55"], StopReason.EVALUATIONS, 1),
+        (["stop.evaluations=56"], StopReason.EVALUATIONS, 2),
+        (["stop.seconds=0"], StopReason.SECONDS, 0),
+        (["stop.loss=1e9"], StopReason.LOSS, 0),
+        (["stop.stall=2", *STUCK], StopReason.STALL, 2),
+    ],
+)
+def test_reasons_to_stop(overrides: list[str], reason: StopReason, generations: int) -> None:
+    result = optimize(load_scene("random-section", overrides))
+    assert result.status is reason
+    assert result.history[-1].index == generations
+
+
+def test_a_sector_and_few_points_can_be_searched() -> None:
+    keys = ["grid.start=10", "grid.stop=200", "section.feature_points=4", "search.generations=15"]
+    ranged = [*keys, "search.recombination=range", "search.mutation=weighted"]
+    result = optimize(load_scene("random-section", ranged))
+    assert result.history[-1].index == 15
+    assert isinstance(result.scene, Scene)
