@@ -75,7 +75,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(figure: Figure, *paths: Path) -> None:
-    """Write a figure by each path's ending (.svg, .png, .pdf); the same one gives the same bytes."""
+    """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes."""
     import matplotlib as mpl
 
     dateless: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
