@@ -29,7 +29,11 @@ def optimize_command(
     scene = load_scene(scene_name, [*overrides, *seeded])
     folder = out or Path("runs") / f"{scene.name}-{scene.search.seed}"
     with progress_bar("generations") as bar, ThreadPoolExecutor(workers) as executor:
-        task = bar.add_task(scene.name, total=scene.search.generations + 1, said="starting (on a new machine: compiling, once)")
+        task = bar.add_task(
+            scene.name,
+            total=scene.search.generations + 1,
+            said="starting (on a new machine: compiling, once)",
+        )
 
         def show(record: Generation) -> None:
             best = record.best_ever.verdict

@@ -62,7 +62,8 @@ def linear_response(moments: Moments, youngs_modulus: float) -> LinearResponse:
     sx, sy = np.moveaxis(moments.chamber_first_moments, -1, 0)
     i11, i12, i22 = i11[..., None], i12[..., None], i22[..., None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        stretch = moments.chamber_areas / moments.area[..., None]
+        area = np.where(moments.area > 0, moments.area, np.nan)
+        stretch = moments.chamber_areas / area[..., None]
         # (r × e3) = (y, −x): solve the symmetric 2 × 2 system I κ = (sy, −sx)
         determinant = i11 * i22 - i12 * i12
         bend_1 = (i22 * sy + i12 * sx) / determinant

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from beamopt.section.drawing import Shape, rasterise
-from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
 from beamopt.section.pieces import Pieces, count_pieces
 from beamopt.section.raster import LabelArray, raster
-from beamopt.section.walls import add_walls
+from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["CrossSection"]
 
@@ -30,7 +32,11 @@ class CrossSection:
     def __post_init__(self) -> None:
         if self.labels.shape != self.grid.shape:
             raise ValueError(f"labels have shape {self.labels.shape}, the grid {self.grid.shape}")
-        self.labels.setflags(write=False)
+        if not np.isin(self.labels, (MATERIAL, *SUPPLIES)).all():
+            raise ValueError("labels: 0 (material) or 1, 2, 3 (supply)")
+        labels = np.array(self.labels, dtype=np.uint8)
+        labels.setflags(write=False)
+        object.__setattr__(self, "labels", labels)
 
     @classmethod
     def from_points(
@@ -58,8 +64,5 @@ class CrossSection:
 
 
 def _walled(grid: PolarGrid, labels: LabelArray, wall_elements: int) -> LabelArray:
-    """`labels` with walls; half of `wall_elements` (an even count) to each side of a boundary."""
-    if wall_elements < 0 or wall_elements % 2:
-        raise ValueError(f"wall_elements = {wall_elements}: must be 0, 2, 4, …")
-    add_walls(labels, wall_elements // 2, grid.is_full_ring)
+    add_walls(labels, wall_steps(wall_elements), grid.is_full_ring)
     return labels

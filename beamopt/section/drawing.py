@@ -8,10 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import FloatArray, PolarGrid
 from beamopt.section.raster import LabelArray
 
 __all__ = ["Circle", "RingPiece", "Shape", "rasterise"]
+
+ON_THE_EDGE = 1e-9
+"""Points this near to a shape's edge [mm; rad] are inside: centroids often lie right on a side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,17 +42,18 @@ class RingPiece:
 
     def __post_init__(self) -> None:
         (inner, outer), (first, last), c = self.r, self.phi, self.corner
-        if not 0 <= inner < outer:
+        _check_supply(self.supply)
+        if not 0 <= inner < outer < np.inf:
             raise ValueError(f"r = [{inner:g}, {outer:g}]: two radii in mm, the smaller one first")
         if not 0 < last - first <= 360:
             raise ValueError(
                 f"phi = [{first:g}, {last:g}]: two angles in degrees, the second up to 360 above"
             )
-        if last - first == 360 or c == 0:
-            return
         half = np.radians(last - first) / 2
         room = (inner + c) * np.sin(min(half, np.pi / 2))
-        if c < 0 or 2 * c > outer - inner or c > room:
+        if last - first == 360 or c == 0:
+            room = np.inf  # no corners, or sharp ones
+        if not (0 <= c <= (outer - inner) / 2 and c <= room):
             most = (outer - inner) / 2
             if half < np.pi / 2 and np.sin(half) < 1:
                 most = min(most, inner * np.sin(half) / (1 - np.sin(half)))
@@ -58,12 +63,13 @@ class RingPiece:
         """Whether points [mm] lie inside."""
         (inner, outer), (first, last), c = self.r, self.phi, self.corner
         radius = np.hypot(x, y)
-        inside = (radius >= inner) & (radius <= outer)
+        inside = (radius >= inner - ON_THE_EDGE) & (radius <= outer + ON_THE_EDGE)
         if last - first == 360:
             return np.asarray(inside)
         span = np.radians(last - first)
-        after = np.mod(np.arctan2(y, x) - np.radians(first), 2 * np.pi)
-        inside &= after <= span
+        turned = np.arctan2(y, x) - np.radians(first) + ON_THE_EDGE
+        after = np.mod(turned, 2 * np.pi) - ON_THE_EDGE
+        inside &= after <= span + ON_THE_EDGE
         for angle in (after, span - after):  # from the first side, from the last one
             for middle, is_outer in ((outer - c, True), (inner + c, False)):
                 inside &= ~_cut(radius, angle, middle, c, is_outer)
@@ -84,7 +90,7 @@ def _cut(
     along, across = radius * np.cos(angle), radius * np.sin(angle)
     beyond = along > touch if is_outer else along < touch
     within = (angle < np.arctan2(corner, touch)) & beyond
-    outside_circle = (along - touch) ** 2 + (across - corner) ** 2 > corner**2
+    outside_circle = np.hypot(along - touch, across - corner) > corner + ON_THE_EDGE
     return np.asarray(within & outside_circle)
 
 
@@ -97,13 +103,19 @@ class Circle:
     radius: float
 
     def __post_init__(self) -> None:
-        if not self.radius > 0:
-            raise ValueError(f"radius = {self.radius:g}: must be above 0 mm")
+        _check_supply(self.supply)
+        if not (0 < self.radius < np.inf and np.isfinite(self.center).all()):
+            raise ValueError(f"radius = {self.radius:g}: must be above 0 mm, center finite")
 
     def covers(self, x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
         """Whether points [mm] lie inside."""
         cx, cy = self.center
-        return np.asarray((x - cx) ** 2 + (y - cy) ** 2 <= self.radius**2)
+        return np.asarray(np.hypot(x - cx, y - cy) <= self.radius + ON_THE_EDGE)
+
+
+def _check_supply(supply: int) -> None:
+    if supply not in SUPPLIES:
+        raise ValueError(f"supply = {supply}: must be 1, 2 or 3")
 
 
 Shape = RingPiece | Circle

@@ -37,13 +37,16 @@ class PolarGrid:
     stop: float = 360.0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.inner_radius < self.outer_radius:
+        if not 0 <= self.inner_radius < self.outer_radius < np.inf:
             raise ValueError(
                 f"inner_radius = {self.inner_radius}: must be at least 0 and below "
                 f"outer_radius = {self.outer_radius}"
             )
-        if self.radial < 1 or self.angular < 1:
-            raise ValueError(f"radial × angular = {self.radial} × {self.angular}: at least 1 × 1")
+        counts = (self.radial, self.angular)
+        if not all(count == int(count) and count >= 1 for count in counts):
+            raise ValueError(
+                f"radial × angular = {self.radial} × {self.angular}: whole, at least 1 × 1"
+            )
         if not 0 < self.stop - self.start <= 360:
             raise ValueError(f"stop = {self.stop}: must be 0…360 degrees above {self.start}")
 

@@ -15,7 +15,7 @@ from beamopt.section.grid import FloatArray, PolarGrid
 from beamopt.section.moments import Moments, sum_moments
 from beamopt.section.neighbours import count_edges, neighbour_ratio
 from beamopt.section.raster import LabelArray, Tiling, nearest_types, tiling
-from beamopt.section.walls import add_walls
+from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["Phenotypes", "phenotypes"]
 
@@ -46,7 +46,7 @@ def phenotypes(
             np.concatenate([points.type for points in candidates]),
             ends,
             tiling(grid),
-            wall_elements // 2,
+            wall_steps(wall_elements),
             grid.is_full_ring,
             grid.radial_integrals,
             grid.angular_integrals,

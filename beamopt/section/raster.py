@@ -24,6 +24,8 @@ Feature points lie on element centroids, so that whole columns of elements are e
 points; without a tolerance, rounding would scatter such a column over both.
 """
 
+SLACK = 1e-4  # mm; more than √TIE, so that no point of a tie is left out
+
 ROWS, COLUMNS = 16, 8  # elements of a tile
 SIZE = ROWS * COLUMNS
 BLOCK_ROWS, BLOCK_COLUMNS = 2, 3  # tiles of a block
@@ -145,7 +147,7 @@ def _possible(
         dx, dy = px[among[q]] - cx, py[among[q]] - cy
         squared[q] = dx * dx + dy * dy
         closest = squared[q] if squared[q] < closest else closest
-    limit = (np.sqrt(closest) + 2 * reach + 1e-6) ** 2
+    limit = (np.sqrt(closest) + 2 * reach + SLACK) ** 2
     count = 0
     for q in range(among.size):
         kept[count] = among[q]

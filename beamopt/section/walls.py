@@ -7,7 +7,20 @@ import numpy as np
 from beamopt.compiled import compiled
 from beamopt.section.raster import LabelArray
 
-__all__ = ["add_walls"]
+__all__ = ["add_walls", "wall_steps"]
+
+
+def wall_steps(wall_elements: int) -> int:
+    """Elements of a wall that lie to each side of a boundary: half of them.
+
+    Raises
+    ------
+    ValueError : not an even number from 0 on.
+
+    """
+    if wall_elements < 0 or wall_elements % 2:
+        raise ValueError(f"wall_elements = {wall_elements}: must be 0, 2, 4, …")
+    return wall_elements // 2
 
 
 @compiled

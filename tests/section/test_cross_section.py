@@ -63,3 +63,13 @@ def test_labels_do_not_change() -> None:
     section = CrossSection.from_drawing(RING, SHAPES)
     with pytest.raises(ValueError, match="read-only"):
         section.labels[0, 0] = 1
+
+
+def test_labels_are_checked_and_copied() -> None:
+    grid = PolarGrid(radial=2, angular=4)
+    with pytest.raises(ValueError, match="labels: 0"):
+        CrossSection(grid, np.full(grid.shape, 7, dtype=np.uint8))
+    labels = np.zeros(grid.shape, dtype=np.uint8)
+    section = CrossSection(grid, labels)
+    labels[0, 0] = 1
+    assert section.labels[0, 0] == 0

@@ -195,3 +195,31 @@ def test_the_largest_corner_fits(corner: float) -> None:
 def test_a_circle_needs_a_radius(radius: float) -> None:
     with pytest.raises(ValueError, match=f"radius = {radius:g}"):
         Circle(1, (0.0, 15.0), radius)
+
+
+@pytest.mark.parametrize("first", [0.5, 20.5, 200.5, 310.5])
+def test_sides_through_centroids_are_straight(first: float) -> None:
+    """Centroids lie at half degrees: such a side takes its whole column, at both ends."""
+    grid = PolarGrid()
+    labels = rasterise(grid, [RingPiece(1, (13.0, 22.0), (first, first + 80))])
+    rows = labels.any(axis=1)
+    columns = labels.any(axis=0)
+    assert columns.sum() == 81
+    assert labels[np.ix_(rows, columns)].all()
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: RingPiece(7, (13.0, 22.0), (0.0, 80.0)),
+        lambda: RingPiece(1, (13.0, np.inf), (0.0, 80.0)),
+        lambda: RingPiece(1, (13.0, 22.0), (0.0, 80.0), np.nan),
+        lambda: RingPiece(1, (13.0, 22.0), (0.0, 360.0), -1.0),
+        lambda: Circle(0, (0.0, 0.0), 3.0),
+        lambda: Circle(1, (np.nan, 0.0), 3.0),
+        lambda: Circle(1, (0.0, 0.0), np.inf),
+    ],
+)
+def test_values_that_are_no_chamber(make) -> None:
+    with pytest.raises(ValueError, match=r"supply|r = |corner|radius"):
+        make()

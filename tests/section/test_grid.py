@@ -109,3 +109,11 @@ def test_columns_of_a_sector_do_not_go_round() -> None:
 def test_misuse_names_the_value(keys: dict[str, float], named: str) -> None:
     with pytest.raises(ValueError, match=named):
         PolarGrid(**keys)
+
+
+@pytest.mark.parametrize(
+    "bad", [{"outer_radius": np.inf}, {"radial": 2.5}, {"outer_radius": np.nan}]
+)
+def test_values_that_are_no_grid(bad: dict) -> None:
+    with pytest.raises(ValueError, match="="):
+        PolarGrid(**bad)

@@ -79,3 +79,10 @@ def test_points_of_one_type_have_ratio_zero() -> None:
     points = FeaturePoints.random(grid, 20, np.random.default_rng(3))
     equal = points.with_types(np.zeros(20, dtype=np.uint8))
     assert phenotypes(grid, [equal], 4).neighbour_ratio[0] == 0
+
+
+@pytest.mark.parametrize("wall_elements", [3, -2])
+def test_walls_that_can_not_be_halved(wall_elements: int) -> None:
+    grid = PolarGrid(radial=4, angular=8)
+    with pytest.raises(ValueError, match="must be 0, 2, 4"):
+        phenotypes(grid, [FeaturePoints([15.0], [0.0], [0])], wall_elements)

@@ -131,3 +131,10 @@ def test_a_point_on_each_centroid_is_found_again() -> None:
     kinds = np.random.default_rng(6).integers(4, size=grid.shape)
     x, y = grid.centroids
     np.testing.assert_array_equal(raster(grid, FeaturePoints(x, y, kinds)), kinds)
+
+
+def test_a_tie_in_a_tile_of_one_element() -> None:
+    grid = PolarGrid(radial=1, angular=1, stop=90)
+    x, y = grid.centroids[:, 0, 0]
+    points = FeaturePoints([x + 3e-5, x], [y, y], [1, 2])  # 9e-10 mm² apart: a tie
+    assert raster(grid, points)[0, 0] == 1
