@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from beamopt.design import Design, load_design
     from beamopt.errors import InputError
     from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+    from beamopt.evolve.run import run
     from beamopt.evolve.stopping import StopReason
     from beamopt.judge import Judge, Status, Verdict
     from beamopt.optimize import optimize
@@ -37,6 +38,7 @@ _HOMES = {
     "beamopt.design": ("Design", "load_design"),
     "beamopt.errors": ("InputError",),
     "beamopt.evolve.algorithm": ("Generation", "GeneticAlgorithm"),
+    "beamopt.evolve.run": ("run",),
     "beamopt.evolve.stopping": ("StopReason",),
     "beamopt.judge": ("Judge", "Status", "Verdict"),
     "beamopt.optimize": ("optimize",),
@@ -75,6 +77,7 @@ __all__ = [
     "load_design",
     "load_scene",
     "optimize",
+    "run",
     "study",
 ]
 

@@ -32,7 +32,7 @@ def optimize_command(
         task = bar.add_task(
             scene.name,
             total=scene.search.generations + 1,
-            said="starting (on a new machine: compiling, once)",
+            said="starting (compiles once on a machine)",
         )
 
         def show(record: Generation) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamopt.section.grid import FloatArray
 
-__all__ = ["arc_centreline", "arc_tip_jacobian", "arc_tips"]
+__all__ = ["arc_centreline", "arc_tip_jacobian", "arc_tips", "arc_tips_by_response"]
 
 SERIES_BELOW = 0.05
 """θ² below which d(sin θ/θ)/dθ² and its sibling are summed as series (error below 1e-16)."""
@@ -41,10 +41,7 @@ def arc_centreline(strains: FloatArray, stations: FloatArray) -> FloatArray:
 
 
 def arc_tip_jacobian(strains: FloatArray, length: float) -> FloatArray:
-    """Derivatives (…, 3, 3) of the tip (x, y, z) by the strains (ε, κ1, κ2).
-
-    The derivative by the response matrix follows: ∂tip/∂B_ij = ∂tip/∂strain_i · P_j.
-    """
+    """Derivatives (…, 3, 3) of the tip (x, y, z) by the strains (ε, κ1, κ2) [mm; mm²]."""
     stretch, k1, k2 = np.moveaxis(strains, -1, 0)
     angle = np.hypot(k1, k2) * length
     q = angle * angle
@@ -65,6 +62,15 @@ def arc_tip_jacobian(strains: FloatArray, length: float) -> FloatArray:
     result[..., 1, 1] -= scale * h * f
     result[..., 0, 2] += scale * h * f
     return result
+
+
+def arc_tips_by_response(strains: FloatArray, pressures: FloatArray, length: float) -> FloatArray:
+    """Derivatives (…, n, 3, 3, 3) of the tips by the response matrix: [k, x, i, j] = ∂tip_x/∂B_ij.
+
+    strains : (…, n, 3) at the pressures (n, 3) [kPa], strain = B P, so that ∂tip/∂B_ij is
+    ∂tip/∂strain_i · P_j [mm·kPa for i = 0, mm²·kPa for i = 1, 2].
+    """
+    return np.asarray(np.einsum("...nxi,nj->...nxij", arc_tip_jacobian(strains, length), pressures))
 
 
 def _slopes(

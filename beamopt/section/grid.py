@@ -44,9 +44,7 @@ class PolarGrid:
             )
         counts = (self.radial, self.angular)
         if not all(count == int(count) and count >= 1 for count in counts):
-            raise ValueError(
-                f"radial × angular = {self.radial} × {self.angular}: whole, at least 1 × 1"
-            )
+            raise ValueError(f"radial, angular = {counts}: whole numbers from 1 on")
         if not 0 < self.stop - self.start <= 360:
             raise ValueError(f"stop = {self.stop}: must be 0…360 degrees above {self.start}")
 

@@ -8,7 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from beamopt.rod.arc import SERIES_BELOW, arc_centreline, arc_tip_jacobian, arc_tips
+from beamopt.rod.arc import (
+    SERIES_BELOW,
+    arc_centreline,
+    arc_tip_jacobian,
+    arc_tips,
+    arc_tips_by_response,
+)
 from beamopt.section.grid import FloatArray
 
 LENGTH = 100.0
@@ -179,3 +185,22 @@ def test_batches_equal_one_by_one() -> None:
         np.testing.assert_allclose(
             together.reshape(expected.shape), expected, rtol=1e-14, atol=1e-11
         )
+
+
+def test_derivatives_by_the_response_matrix() -> None:
+    """Against central differences; their error is the square of the step."""
+    rng = np.random.default_rng(5)
+    matrix = rng.normal(size=(3, 3)) * [[1e-3], [1e-4], [1e-4]]
+    pressures = rng.uniform(0, 100, (4, 3))
+
+    def tips(m: np.ndarray) -> np.ndarray:
+        return arc_tips(pressures @ m.T, 100.0)
+
+    exact = arc_tips_by_response(pressures @ matrix.T, pressures, 100.0)
+    assert exact.shape == (4, 3, 3, 3)
+    for i in range(3):
+        for j in range(3):
+            step = np.zeros((3, 3))
+            step[i, j] = 1e-6 * (1.0 if i == 0 else 1e-2)
+            slope = (tips(matrix + step) - tips(matrix - step)) / (2 * step[i, j])
+            np.testing.assert_allclose(exact[:, :, i, j], slope, rtol=1e-6, atol=1e-2)
