@@ -21,15 +21,16 @@ if TYPE_CHECKING:
     from beamopt.evolve.run import run
     from beamopt.evolve.stopping import StopReason
     from beamopt.judge import Judge, Status, Verdict
-    from beamopt.optimize import optimize
+    from beamopt.optimisation import optimize
     from beamopt.plot.figures import design_figure
     from beamopt.result import Optimisation
-    from beamopt.rod.response import LinearResponse, linear_response
+    from beamopt.rod.response import LinearResponse, Response, linear_response
     from beamopt.scene import Scene, load_scene
     from beamopt.section.cross_section import CrossSection
     from beamopt.section.feature_points import FeaturePoints
     from beamopt.section.grid import PolarGrid
-    from beamopt.study.run import study
+    from beamopt.study.plan import Plan
+    from beamopt.study.run import run_study
     from beamopt.target import Target
     from beamopt.workspace import Workspace
 
@@ -41,15 +42,16 @@ _HOMES = {
     "beamopt.evolve.run": ("run",),
     "beamopt.evolve.stopping": ("StopReason",),
     "beamopt.judge": ("Judge", "Status", "Verdict"),
-    "beamopt.optimize": ("optimize",),
+    "beamopt.optimisation": ("optimize",),
     "beamopt.plot.figures": ("design_figure",),
     "beamopt.result": ("Optimisation",),
-    "beamopt.rod.response": ("LinearResponse", "linear_response"),
+    "beamopt.rod.response": ("LinearResponse", "Response", "linear_response"),
     "beamopt.scene": ("Scene", "load_scene"),
     "beamopt.section.cross_section": ("CrossSection",),
     "beamopt.section.feature_points": ("FeaturePoints",),
     "beamopt.section.grid": ("PolarGrid",),
-    "beamopt.study.run": ("study",),
+    "beamopt.study.plan": ("Plan",),
+    "beamopt.study.run": ("run_study",),
     "beamopt.target": ("Target",),
     "beamopt.workspace": ("Workspace",),
 }
@@ -64,7 +66,9 @@ __all__ = [
     "Judge",
     "LinearResponse",
     "Optimisation",
+    "Plan",
     "PolarGrid",
+    "Response",
     "Scene",
     "Status",
     "StopReason",
@@ -78,7 +82,7 @@ __all__ = [
     "load_scene",
     "optimize",
     "run",
-    "study",
+    "run_study",
 ]
 
 

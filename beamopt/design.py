@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
@@ -21,7 +21,7 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import FloatArray, PolarGrid
 from beamopt.workspace import Workspace, workspace_of
 
-__all__ = ["Actuator", "Design", "Grid", "Levels", "load_design"]
+__all__ = ["Actuator", "Design", "Grid", "Levels", "WallElements", "load_design"]
 
 SCHEMA = "beamopt-design/1"
 MOST_ELEMENTS = 4_000_000
@@ -33,13 +33,15 @@ Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=200
 class Grid(Model):
     """The polar grid of equal-area elements."""
 
-    inner_radius: Number = quantity(10.0, "inner radius of the ring", "mm", 0, 1000)
-    outer_radius: Number = quantity(25.0, "outer radius of the ring", "mm", 0.5, 1000)
-    radial: Count = quantity(128, "elements along the radius", "", 4, 4096)
-    angular: Count = quantity(360, "elements around", "", 8, 16384)
-    start: Number = quantity(0.0, "angle at which a sector starts", "degrees", -360, 360)
+    inner_radius: Number = quantity(10.0, "inner radius of the ring", unit="mm", low=0, high=1000)
+    outer_radius: Number = quantity(25.0, "outer radius of the ring", unit="mm", low=0.5, high=1000)
+    radial: Count = quantity(128, "elements along the radius", low=4, high=4096)
+    angular: Count = quantity(360, "elements around", low=8, high=16384)
+    start: Number = quantity(
+        0.0, "angle at which a sector starts", unit="degrees", low=-360, high=360
+    )
     stop: Number = quantity(
-        360.0, "angle at which it ends; 360 more is a ring", "degrees", -360, 720
+        360.0, "angle at which it ends; 360 more is a ring", unit="degrees", low=-360, high=720
     )
 
     @model_validator(mode="after")
@@ -51,15 +53,21 @@ class Grid(Model):
 
     def build(self) -> PolarGrid:
         """The grid that the section floor works on."""
-        return PolarGrid(**self.model_dump())
+        return _polar_grid(**self.model_dump())
+
+
+@lru_cache(maxsize=16)
+def _polar_grid(**values: Any) -> PolarGrid:
+    """One grid for equal values: its centroids and integrals are computed once."""
+    return PolarGrid(**values)
 
 
 class Actuator(Model):
     """The extruded body and its material."""
 
-    length: Number = quantity(100.0, "undeformed length H", "mm", 5, 5000)
-    youngs_modulus: Number = quantity(300.0, "Young's modulus E", "kPa", 5, 50_000)
-    shear_modulus: Number = quantity(100.0, "shear modulus G", "kPa", 1, 50_000)
+    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
+    youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
+    shear_modulus: Number = quantity(100.0, "shear modulus G", unit="kPa", low=1, high=50_000)
 
 
 def _ascending(levels: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -90,12 +98,14 @@ class Points(Model):
 class DrawnChamber(Model):
     """Either a piece of a ring (r, phi, corner) or a circle (center, radius)."""
 
-    supply: Count = quantity(..., "pressure supply of the chamber", "", 1, 3)
-    r: tuple[Position, Position] | None = quantity(None, "inner and outer radius", "mm")
-    phi: tuple[Position, Position] | None = quantity(None, "first and last angle", "degrees")
-    corner: Number | None = quantity(None, "radius of the rounded corners", "mm", 0, 1000)
-    center: tuple[Position, Position] | None = quantity(None, "centre of a circle", "mm")
-    radius: Number | None = quantity(None, "radius of a circle", "mm", 0, 1000)
+    supply: Count = quantity(..., "pressure supply of the chamber", low=1, high=3)
+    r: tuple[Position, Position] | None = quantity(None, "inner and outer radius", unit="mm")
+    phi: tuple[Position, Position] | None = quantity(None, "first and last angle", unit="degrees")
+    corner: Number | None = quantity(
+        None, "radius of the rounded corners", unit="mm", low=0, high=1000
+    )
+    center: tuple[Position, Position] | None = quantity(None, "centre of a circle", unit="mm")
+    radius: Number | None = quantity(None, "radius of a circle", unit="mm", low=0, high=1000)
 
     @model_validator(mode="after")
     def _is_one_shape(self) -> DrawnChamber:
@@ -112,11 +122,21 @@ class DrawnChamber(Model):
         raise ValueError("a chamber has either r and phi (and corner), or center and radius")
 
 
+def _even(count: int) -> int:
+    if count % 2:
+        raise ValueError("an even number: half of a wall lies on each side of a boundary")
+    return count
+
+
+WallElements = Annotated[int, Field(strict=True), AfterValidator(_even)]
+"""Elements of a wall between chambers of different supplies."""
+
+
 class Seal(Model):
     """Skin and walls in mm; this version builds unsealed sections only."""
 
-    skin: Number = quantity(0.0, "skin on the ring's surfaces (0: unsealed)", "mm")
-    wall: Number = quantity(0.0, "least wall between chambers", "mm")
+    skin: Number = quantity(0.0, "skin on the ring's surfaces (0: unsealed)", unit="mm")
+    wall: Number = quantity(0.0, "least wall between chambers", unit="mm")
     islands: Literal["keep", "remove"] = quantity("keep", "what happens to islands of material")
 
     @model_validator(mode="after")
@@ -138,18 +158,13 @@ class Design(Model):
     grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
     feature_points: Points | None = quantity(None, "x, y, type of every feature point")
     drawing: list[DrawnChamber] | None = quantity(None, "a list of drawn chambers")
-    wall_elements: Count = quantity(..., "elements of a wall between supplies, even", "", 0, 64)
+    wall_elements: WallElements = quantity(
+        ..., "elements of a wall between supplies, even", low=0, high=64
+    )
     seal: Seal = quantity(..., "skin, wall, islands")
     actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
-    pressures: Levels = quantity(..., "three levels, ascending", "kPa")
+    pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
     notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
-
-    @field_validator("wall_elements")
-    @classmethod
-    def _even(cls, count: int) -> int:
-        if count % 2:
-            raise ValueError("an even number: half of a wall lies on each side of a boundary")
-        return count
 
     @model_validator(mode="after")
     def _one_section(self) -> Design:
@@ -209,7 +224,7 @@ class Design(Model):
 
     def json(self) -> str:  # type: ignore[override]  # pydantic's own `json` is deprecated
         """The design file's text."""
-        return json_text(self.model_dump(by_alias=True, exclude_defaults=False, exclude_none=True))
+        return json_text(self.model_dump(by_alias=True, exclude_none=True))
 
     def save(self, path: str | Path) -> Path:
         """Write the design file; a kill never leaves half of it."""
@@ -231,6 +246,6 @@ def load_design(path: str | Path) -> Design:
     if schema != SCHEMA:
         raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
     design = parse(Design, data, file)
-    if not design.section.moments.area > 0:
-        raise InputError(file, "", "a section without material", "some material must be left")
+    if not design.section.moments.is_stiff:
+        raise InputError(file, "", None, "the section has no material, or too little to bend")
     return design

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import csv
+import errno
+import io
 import json
 import os
 from collections.abc import Iterable, Sequence
@@ -11,9 +14,17 @@ __all__ = ["csv_text", "json_text", "write_atomic"]
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
-    """Write a whole file or nothing: to a temporary name beside it, to disk, then renamed."""
+    """Write a whole file or nothing: to a temporary name beside it, to disk, then renamed.
+
+    Raises
+    ------
+    OSError : the folder is missing or can not be written.
+
+    """
     data = content.encode() if isinstance(content, str) else content
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder", str(path.parent))
     try:
         with temporary.open("wb") as stream:
             stream.write(data)
@@ -26,12 +37,10 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 
 def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:
     """A comma-separated table; floats with all their digits, empty cells for None."""
-    lines = [",".join("" if cell is None else _cell(cell) for cell in row) for row in rows]
-    return "\n".join([header, *lines]) + "\n"
-
-
-def _cell(value: object) -> str:
-    return repr(float(value)) if isinstance(value, float) else str(value)
+    stream = io.StringIO()
+    stream.write(header + "\n")
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    return stream.getvalue()
 
 
 def json_text(value: object) -> str:

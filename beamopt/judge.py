@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import Enum
@@ -12,11 +12,12 @@ from itertools import pairwise
 import numpy as np
 
 from beamopt.rod.arc import arc_tips
-from beamopt.rod.response import linear_response
+from beamopt.rod.response import Response
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.moments import Moments
 from beamopt.section.phenotype import phenotypes
-from beamopt.workspace import loss, pressure_grid
+from beamopt.workspace import NODES, loss, pressure_grid
 
 __all__ = ["Judge", "Status", "Verdict", "judge_all"]
 
@@ -27,6 +28,7 @@ class Status(Enum):
     JUDGED = "judged"
     NO_FEATURE_POINTS = "recombination left no feature point"
     NO_MATERIAL = "the section has no material"
+    NOT_STIFF = "the section has too little material to compute its bending stiffness"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,7 @@ class Judge:
     ----------
     grid, wall_elements : the section's raster.
     length : H [mm].
-    youngs_modulus : E [kPa].
+    response_of : what makes a response of the sections' moments.
     levels : the three pressure levels [kPa].
     target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
     neighbour_weight : λ of the second objective.
@@ -65,7 +67,7 @@ class Judge:
     grid: PolarGrid
     wall_elements: int
     length: float
-    youngs_modulus: float
+    response_of: Callable[[Moments], Response]
     levels: tuple[float, float, float]
     target: FloatArray
     neighbour_weight: float
@@ -75,33 +77,42 @@ class Judge:
         """(27, 3) pressure combinations [kPa]."""
         return pressure_grid(self.levels)
 
+    def __post_init__(self) -> None:
+        if self.target.shape != (NODES, 3) or not np.isfinite(self.target).all():
+            raise ValueError(f"target: {NODES} finite tips (27, 3) in mm")
+
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
         """(n, 27, 3) tips of every candidate [mm]; NaN without material."""
-        return self._tips_and_ratio(candidates)[0]
+        return self._tips(phenotypes(self.grid, candidates, self.wall_elements).moments)
 
     def __call__(self, candidates: Sequence[FeaturePoints]) -> list[Verdict]:
         """One verdict a candidate; the same whatever else is in the batch."""
-        tips, ratio = self._tips_and_ratio(candidates)
-        first = loss(tips, self.target)
-        second = self.neighbour_weight * ratio
+        measured = phenotypes(self.grid, candidates, self.wall_elements)
+        first = loss(self._tips(measured.moments), self.target)
+        second = self.neighbour_weight * measured.neighbour_ratio
+        rows = zip(candidates, measured.moments.area, measured.moments.is_stiff, strict=True)
+        statuses = [_status(len(points), area, stiff) for points, area, stiff in rows]
         return [
-            self._verdict(points, float(L), float(K))
-            for points, L, K in zip(candidates, first, second, strict=True)
+            Verdict(float(L), float(K)) if status is Status.JUDGED else _failed(status)
+            for L, K, status in zip(first, second, statuses, strict=True)
         ]
 
-    def _tips_and_ratio(self, candidates: Sequence[FeaturePoints]) -> tuple[FloatArray, FloatArray]:
-        measured = phenotypes(self.grid, candidates, self.wall_elements)
-        response = linear_response(measured.moments, self.youngs_modulus)
+    def _tips(self, moments: Moments) -> FloatArray:
+        response = self.response_of(moments)
         with np.errstate(invalid="ignore"):
-            tips = arc_tips(response.strains(self.pressures), self.length)
-        return tips, measured.neighbour_ratio
+            return arc_tips(response.strains(self.pressures), self.length)
 
-    def _verdict(self, points: FeaturePoints, L: float, K: float) -> Verdict:
-        if len(points) == 0:
-            return Verdict(np.inf, np.inf, Status.NO_FEATURE_POINTS)
-        if not np.isfinite(L):
-            return Verdict(np.inf, np.inf, Status.NO_MATERIAL)
-        return Verdict(L, K)
+
+def _status(points: int, area: float, is_stiff: bool) -> Status:
+    if points == 0:
+        return Status.NO_FEATURE_POINTS
+    if area == 0:
+        return Status.NO_MATERIAL
+    return Status.JUDGED if is_stiff else Status.NOT_STIFF
+
+
+def _failed(status: Status) -> Verdict:
+    return Verdict(np.inf, np.inf, status)
 
 
 def judge_all(

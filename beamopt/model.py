@@ -30,6 +30,7 @@ class Model(BaseModel):
 def quantity(
     default: Any,
     text: str,
+    *,
     unit: str = "",
     low: float | None = None,
     high: float | None = None,
@@ -86,7 +87,8 @@ def _explained(error: ValidationError, model: type[BaseModel], where: object) ->
         return InputError(where, path, None, f"must be given: {_described(field)}")
     if kind == "value_error":
         whole = isinstance(value, Mapping | list | tuple)
-        return InputError(where, path, None if whole else value, said.split(", ", 1)[1])
+        said = str(first["ctx"]["error"])
+        return InputError(where, path, None if whole else value, said)
     said = said[0].lower() + said[1:]
     limits = allowed(field) if field is not None and path[-1] != "]" else ""
     if limits and kind in ("greater_than_equal", "less_than_equal", "literal_error"):
@@ -147,11 +149,14 @@ def read_text(path: Path) -> str:
 
     """
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise InputError(path, "", error.strerror or "unreadable", "a readable file") from None
+        reason = (error.strerror or "can not be read").lower()
+        raise InputError(path, "", None, reason) from None
     except UnicodeDecodeError:
-        raise InputError(path, "", "not text", "a text file in UTF-8") from None
+        raise InputError(path, "", None, "no text file in UTF-8") from None
+    except ValueError as error:  # a path that can not be one
+        raise InputError(repr(str(path)), "", None, str(error)) from None
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -162,11 +167,14 @@ def read_json(path: Path) -> dict[str, Any]:
     InputError : as `read_text`, or it is not one whole JSON object.
 
     """
+    text = read_text(path)
     try:
-        data = json.loads(read_text(path))
+        data = json.loads(text)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise InputError(path, place, error.msg, "a whole JSON file (is it cut off?)") from None
+    except (ValueError, RecursionError) as error:  # numbers too long, brackets too deep
+        raise InputError(path, "", None, f"no JSON that can be read: {error}") from None
     if not isinstance(data, dict):
         raise InputError(path, "", type(data).__name__, "a JSON object {…}")
     return data

@@ -10,7 +10,7 @@ from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Verdict
 from beamopt.scene import Scene
 from beamopt.target import Target
-from beamopt.workspace import rms_distance
+from beamopt.workspace import NODES, rms_distance
 
 __all__ = ["Optimisation"]
 
@@ -43,7 +43,7 @@ class Optimisation:
     @property
     def rms_distance(self) -> float:
         """Root mean square distance of the best design's 27 tips from the target's [mm]."""
-        return rms_distance(self.verdict.L, 27)
+        return rms_distance(self.verdict.L, NODES)
 
     @property
     def evaluations(self) -> int:

@@ -12,62 +12,72 @@ import numpy as np
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
 from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.result import Optimisation
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.section.grid import FloatArray
 from beamopt.target import Target, tips_csv
+from beamopt.workspace import NODES, rms_distance
 
 __all__ = ["RunFolder"]
 
-GOES_ON = {"generations", "stop"}  # keys that may change when a run goes on
+GOES_ON = {"search.generations", "stop"}  # keys that may change when a run goes on
+
+SOURCES = {"section": "target-source.json", "workspace": "target-source.csv"}
+FIGURES = ("best.svg", "best.png", "convergence.svg", "convergence.png")
+BEGINNING = ("journal.jsonl", "target.csv", *SOURCES.values())  # may be there before scene.toml
+NAMES = (
+    *BEGINNING,
+    "scene.toml",
+    "history.csv",
+    "tips.csv",
+    "best.json",
+    "final.json",
+    "summary.json",
+    *FIGURES,
+    "timing.csv",
+    "provenance.json",
+)
 
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """Paths of a run folder that is ready to be written to."""
+    """The files of a run."""
 
     path: Path
 
     @classmethod
-    def open(cls, path: Path, scene: Scene, target: Target, *, resume: bool) -> RunFolder:
-        """Make a folder for `scene`, or with `resume` check that the one there belongs to it.
+    def open(cls, path: Path, *, resume: bool) -> RunFolder:
+        """Make a run folder, or with `resume` take the one there.
 
         Raises
         ------
-        InputError : the folder holds something already, or another scene, or can not be written.
+        InputError : it holds something already, or something else, or can not be written.
 
         """
-        folder = cls(path)
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            held = [item for item in path.iterdir() if not _is_leftover(item)]
-            if held and not resume:
-                raise InputError(path, "", None, "holds files already; --resume goes on with a run")
-            if held and not (path / "scene.toml").exists():
-                names = {item.name for item in held} - {"target.csv"} - set(_source_names())
-                if names:
-                    raise InputError(path, "", None, "is no run folder: it has no scene.toml")
-            folder._start(scene, target)
-        except OSError as error:
-            reason = (error.strerror or "can not be written").lower()
-            raise InputError(
-                path, "", None, f"{reason}; name a folder that can be written"
-            ) from None
-        return folder
+        claim_folder(path, "scene.toml", BEGINNING, resume=resume)
+        return cls(path)
 
     @property
     def journal(self) -> Path:
-        """The append-only journal."""
+        """The append-only journal; whoever holds its lock may write to the folder."""
         return self.path / "journal.jsonl"
 
-    def _start(self, scene: Scene, target: Target) -> None:
-        for leftover in filter(_is_leftover, self.path.iterdir()):
-            leftover.unlink(missing_ok=True)
+    def begin(self, scene: Scene, target: Target) -> None:
+        """Keep what is asked for, or check that it is what the run there was asked for.
+
+        Raises
+        ------
+        InputError : the run to go on with has another scene or target.
+
+        """
         kept, source = self._scene_to_keep(scene)
         if (self.path / "scene.toml").exists():
             self._check_same(kept, source)
+        clear_leftovers(self.path, NAMES)
         if source is not None:
             write_atomic(self.path / str(kept.target.file), source)
         pressures = target.workspace.pressures
@@ -79,7 +89,7 @@ class RunFolder:
         if scene.target.file is None:
             return scene, None
         source = Path(scene.target.file)
-        name = f"target-source{source.suffix}"
+        name = SOURCES[scene.target.kind]
         target = scene.target.model_copy(update={"file": name})
         return scene.model_copy(update={"target": target}), source.read_bytes()
 
@@ -97,14 +107,18 @@ class RunFolder:
             raise InputError(kept, "", None, "differs from the file that the scene names now")
 
     def write_result(self, result: Optimisation, *, figures: bool = True) -> None:
-        """Write designs, tables and figures; each whole or not at all."""
+        """Write designs, tables and figures; each whole or not at all.
+
+        Where no candidate could be judged there is no design to write.
+        """
         write_atomic(self.path / "history.csv", history_csv(result.history))
-        write_atomic(self.path / "tips.csv", _distances_csv(result))
-        result.best.save(self.path / "best.json")
-        result.final.save(self.path / "final.json")
+        if result.verdict.status is Status.JUDGED:
+            write_atomic(self.path / "tips.csv", _distances_csv(result))
+            result.best.save(self.path / "best.json")
+            result.final.save(self.path / "final.json")
+            if figures:
+                self._draw(result)
         write_atomic(self.path / "summary.json", json_text(summary(result)))
-        if figures:
-            self._draw(result)
         timing = [
             ("search", result.seconds, "s"),
             ("evaluation", result.seconds / result.evaluations, "s"),
@@ -114,10 +128,10 @@ class RunFolder:
         write_atomic(self.path / "provenance.json", json_text(made))
 
     def _draw(self, result: Optimisation) -> None:
-        from beamopt.plot.figures import convergence_figure, design_figure
+        from beamopt.plot.figures import convergence_figure, design_figure, design_title
         from beamopt.plot.style import save_figure
 
-        title = f"{result.scene.name}: L = {result.verdict.L:.4g} mm²"
+        title = design_title(result.best)
         lowest = [record.best.verdict.L for record in result.history]
         ever = [record.best_ever.verdict.L for record in result.history]
         mean = np.array([np.mean(_losses(record)) for record in result.history])
@@ -131,26 +145,25 @@ class RunFolder:
 def summary(result: Optimisation) -> dict[str, Any]:
     """How a search ended and what it found, without times."""
     pieces = result.best.section.pieces
-    final = result.history[-1].best.verdict
     return {
         "status": result.status.value,
         "scene": result.scene.name,
         "seed": result.scene.search.seed,
         "generations": result.history[-1].index,
         "evaluations": result.evaluations,
-        "best": _losses_of(result.verdict.L, result.verdict.K)
-        | {
-            "rms_distance": result.rms_distance,
-            "islands": pieces.islands,
-            "chambers": list(pieces.chambers),
-        },
-        "final": _losses_of(final.L, final.K),
+        "best": _summary_of(result.verdict)
+        | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
+        "final": _summary_of(result.history[-1].best.verdict),
         "warnings": list(result.target.warnings),
     }
 
 
-def _losses_of(L: float, K: float) -> dict[str, Any]:
-    return {"L": L, "K": K, "T": L + K}
+def _summary_of(verdict: Verdict) -> dict[str, Any]:
+    if verdict.status is not Status.JUDGED:
+        return {"status": verdict.status.value}
+    rms = rms_distance(verdict.L, NODES)
+    losses = {"L": verdict.L, "K": verdict.K, "T": verdict.T, "rms_distance": rms}
+    return {"status": verdict.status.value, **losses}
 
 
 def history_csv(history: tuple[Generation, ...]) -> str:
@@ -179,19 +192,11 @@ def _distances_csv(result: Optimisation) -> str:
     return csv_text(header, table.tolist())
 
 
-def _source_names() -> tuple[str, ...]:
-    return ("target-source.json", "target-source.csv")
-
-
-def _is_leftover(path: Path) -> bool:
-    """Whether a kill left this file half-written under a temporary name."""
-    return path.name.startswith(".") and path.name.endswith(".tmp")
-
-
 def _differences(old: Any, new: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
     if isinstance(old, dict) and isinstance(new, dict):
         for name in new:
-            if name not in GOES_ON:
-                yield from _differences(old.get(name), new[name], f"{key}.{name}".lstrip("."))
+            inner = f"{key}.{name}" if key else name
+            if inner not in GOES_ON:
+                yield from _differences(old.get(name), new[name], inner)
     elif old != new:
         yield key, old, new

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,11 +12,11 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from beamopt.bundled import bundled_scenes
-from beamopt.design import Actuator, Design, Grid, Levels, load_design
+from beamopt.design import Actuator, Design, Grid, Levels, WallElements, load_design
 from beamopt.errors import InputError
 from beamopt.judge import Judge
 from beamopt.model import Count, Model, Number, parse, quantity, read_text
-from beamopt.section.cross_section import CrossSection
+from beamopt.rod.response import linear_response
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.target import BaseFrame, Target, oddities, read_target
 from beamopt.workspace import workspace_of
@@ -29,24 +30,23 @@ Vector = tuple[Number, Number, Number]
 class SectionRules(Model):
     """How a section is made from feature points."""
 
-    feature_points: Count = quantity(100, "feature points of a new section, N_f", "", 1, 10_000)
-    material_probability: Number = quantity(
-        0.5, "probability that one is material; the supplies share the rest", "", 0, 1
+    feature_points: Count = quantity(
+        100, "feature points of a new section, N_f", low=1, high=10_000
     )
-    wall_elements: Count = quantity(4, "elements of a wall between supplies, even", "", 0, 64)
-
-    @field_validator("wall_elements")
-    @classmethod
-    def _even(cls, count: int) -> int:
-        if count % 2:
-            raise ValueError("an even number: half of a wall lies on each side of a boundary")
-        return count
+    material_probability: Number = quantity(
+        0.5, "probability that one is material; the supplies share the rest", low=0, high=1
+    )
+    wall_elements: WallElements = quantity(
+        4, "elements of a wall between supplies, even", low=0, high=64
+    )
 
 
 class Pressures(Model):
     """What the supplies can give."""
 
-    levels: Levels = quantity((0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", "kPa")
+    levels: Levels = quantity(
+        (0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", unit="kPa"
+    )
 
 
 class TargetChoice(Model):
@@ -57,9 +57,9 @@ class TargetChoice(Model):
     """
 
     kind: Literal["random", "section", "workspace"] = quantity("random", "where it comes from")
-    seed: Count = quantity(0, 'seed of the random section, for kind "random"', "", 0)
+    seed: Count = quantity(0, 'seed of the random section, for kind "random"', low=0)
     file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
-    base_origin: Vector = quantity((0.0, 0.0, 0.0), "the base in the table's frame", "mm")
+    base_origin: Vector = quantity((0.0, 0.0, 0.0), "the base in the table's frame", unit="mm")
     base_x: Vector = quantity((1.0, 0.0, 0.0), "direction of the section's x axis in that frame")
     base_z: Vector = quantity((0.0, 0.0, 1.0), "direction of the straight actuator in that frame")
 
@@ -83,25 +83,29 @@ class TargetChoice(Model):
 class Search(Model):
     """The genetic algorithm."""
 
-    population: Count = quantity(20, "individuals, N_p", "", 2, 10_000)
-    generations: Count = quantity(100, "generations, N_g", "", 0, 1_000_000)
-    crossover_probability: Number = quantity(0.8, "offspring per individual, p_c", "", 0, 10)
-    mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", "", 0, 1)
-    mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", "", 0, 1)
-    swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", "", 0, 1)
-    neighbour_weight: Number = quantity(1000.0, "weight of the second objective, λ", "", 0, 1e9)
+    population: Count = quantity(20, "individuals, N_p", low=2, high=10_000)
+    generations: Count = quantity(100, "generations, N_g", low=0, high=1_000_000)
+    crossover_probability: Number = quantity(0.8, "offspring per individual, p_c", low=0, high=10)
+    mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", low=0, high=1)
+    mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", low=0, high=1)
+    swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", low=0, high=1)
+    neighbour_weight: Number = quantity(
+        1000.0, "weight of the second objective, λ", low=0, high=1e9
+    )
     recombination: Literal["fixed", "range"] = quantity("fixed", "crossover method")
     mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
-    seed: Count = quantity(0, "seed of everything random in the search", "", 0)
+    seed: Count = quantity(0, "seed of everything random in the search", low=0)
 
 
 class Stop(Model):
     """Reasons to stop before the last generation; a key that is left out never does."""
 
-    evaluations: Count | None = quantity(None, "most sections judged", "", 1)
-    seconds: Number | None = quantity(None, "most time, counted anew on --resume", "s", 0)
-    stall: Count | None = quantity(None, "generations without a lower L", "generations", 1)
-    loss: Number | None = quantity(None, "an L that is good enough", "mm²", 0)
+    evaluations: Count | None = quantity(
+        None, "most sections judged; the first population is", low=1
+    )
+    seconds: Number | None = quantity(None, "most time, counted anew on --resume", unit="s", low=0)
+    stall: Count | None = quantity(None, "generations without a lower L", unit="generations", low=1)
+    loss: Number | None = quantity(None, "an L that is good enough", unit="mm²", low=0)
 
 
 class Scene(Model):
@@ -142,9 +146,10 @@ class Scene(Model):
         if chosen.kind == "section":
             return self._workspace_of_design(Path(str(chosen.file)))
         points = self.random_points(np.random.default_rng([chosen.seed]))
-        section = CrossSection.from_points(self.grid.build(), points, self.section.wall_elements)
         design = self.design_of(points)
-        return Target(design.workspace, section)
+        if not design.section.moments.is_stiff:
+            raise InputError("", "target.seed", chosen.seed, "this random section has no material")
+        return Target(design.workspace, design.section)
 
     def _workspace_of_design(self, path: Path) -> Target:
         """A design's workspace: with its own length and material, at this scene's pressures."""
@@ -178,7 +183,7 @@ class Scene(Model):
             grid=self.grid.build(),
             wall_elements=self.section.wall_elements,
             length=self.actuator.length,
-            youngs_modulus=self.actuator.youngs_modulus,
+            response_of=partial(linear_response, youngs_modulus=self.actuator.youngs_modulus),
             levels=self.pressures.levels,
             target=target.workspace.tips,
             neighbour_weight=self.search.neighbour_weight,
@@ -202,9 +207,10 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     if not path.exists():
         names = ", ".join(bundled_scenes())
         raise InputError(scene, "", None, f"no such scene; a path, or one of: {names}")
+    text = read_text(path)
     try:
-        data = tomllib.loads(read_text(path))
-    except tomllib.TOMLDecodeError as error:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         raise InputError(path, "", None, f"no TOML file: {error}") from None
     if data.get("schema", SCHEMA) != SCHEMA:
         raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
@@ -213,7 +219,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     read = parse(Scene, data, path)
     if read.target.file is None:
         return read
-    file = str((path.parent / read.target.file).resolve())
+    file = str(path.parent.resolve() / read.target.file)
     return read.model_copy(update={"target": read.target.model_copy(update={"file": file})})
 
 
@@ -223,7 +229,7 @@ def _override(data: dict[str, Any], override: str) -> None:
         raise InputError("--set", "", override, "written as section.key=value")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         value = text.strip()
     *sections, last = key.strip().split(".")
     for name in sections:

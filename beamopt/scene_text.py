@@ -12,37 +12,26 @@ from beamopt.scene import Scene
 __all__ = ["scene_text"]
 
 
-def scene_text(scene: Scene, *, comments: bool = True) -> str:
+def scene_text(scene: Scene) -> str:
     """The TOML file of a scene; reading it gives the same scene."""
     plain: list[str] = []
     tables: list[str] = []
     for name, field in Scene.model_fields.items():
         value = getattr(scene, name)
         if not isinstance(value, Model):
-            said = f"  # {field.description}" if comments else ""
-            plain.append(f"{field.alias or name} = {_toml(value)}{said}")
+            plain.append(f"{field.alias or name} = {_toml(value)}  # {field.description}")
             continue
-        tables.append("")
-        if comments:
-            text = " ".join((type(value).__doc__ or "").split())
-            tables += [f"# {line}" for line in wrap(text, 96)]
-        tables.append(f"[{name}]")
-        tables += _table(value, comments)
+        text = " ".join((type(value).__doc__ or "").split())
+        tables += ["", *(f"# {line}" for line in wrap(text, 96)), f"[{name}]", *_table(value)]
     return "\n".join(plain + tables) + "\n"
 
 
-def _table(model: Model, comments: bool) -> list[str]:
+def _table(model: Model) -> list[str]:
     lines = []
     for name, field in type(model).model_fields.items():
-        value = getattr(model, name)
-        said = ""
-        if comments:
-            limits = allowed(field)
-            said = f"  # {field.description}" + (f" [{limits}]" if limits else "")
-        if value is not None:
-            lines.append(f"{name} = {_toml(value)}{said}")
-        elif comments:
-            lines.append(f"# {name} ={said}")
+        value, limits = getattr(model, name), allowed(field)
+        said = f"  # {field.description}" + (f" [{limits}]" if limits else "")
+        lines.append(f"# {name} ={said}" if value is None else f"{name} = {_toml(value)}{said}")
     return lines
 
 

@@ -13,7 +13,7 @@ from beamopt.files import csv_text
 from beamopt.model import read_text
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.grid import FloatArray
-from beamopt.workspace import Workspace, pressure_grid
+from beamopt.workspace import NODES, Workspace, node_index, pressure_grid
 
 __all__ = ["BaseFrame", "Target", "oddities", "read_target", "tips_csv"]
 
@@ -85,7 +85,7 @@ def read_target(
 
     """
     rows = _rows(path)
-    tips = np.full((27, 3), np.nan)
+    tips = np.full((NODES, 3), np.nan)
     found: dict[int, int] = {}
     extra = 0
     for line, values in rows:
@@ -99,11 +99,11 @@ def read_target(
         else:
             found[node] = line
             tips[node] = values[3:]
-    if len(found) < 27:
-        absent = pressure_grid(levels)[next(k for k in range(27) if k not in found)]
+    if len(found) < NODES:
+        absent = pressure_grid(levels)[next(k for k in range(NODES) if k not in found)]
         raise InputError(
             path,
-            f"{len(found)} of 27 pressure combinations",
+            f"{len(found)} of {NODES} pressure combinations",
             None,
             f"{_combination(absent)} has none; every combination of {_listed(levels)} needs a row",
         )
@@ -123,7 +123,7 @@ def _rows(path: Path) -> list[tuple[int, list[float]]]:
     ]
     if not lines:
         raise InputError(path, "", "an empty file", f"a table with the columns {','.join(COLUMNS)}")
-    header = [name.strip() for name in next(csv.reader([lines[0][1]]))]
+    header = [name.strip() for name in _cells(path, *lines[0])]
     for name in COLUMNS:
         if header.count(name) != 1:
             raise InputError(
@@ -134,7 +134,7 @@ def _rows(path: Path) -> list[tuple[int, list[float]]]:
 
 
 def _numbers(path: Path, number: int, line: str, places: list[int]) -> list[float]:
-    cells = next(csv.reader([line]))
+    cells = _cells(path, number, line)
     values = []
     for name, place in zip(COLUMNS, places, strict=True):
         text = cells[place].strip() if place < len(cells) else ""
@@ -149,12 +149,19 @@ def _numbers(path: Path, number: int, line: str, places: list[int]) -> list[floa
     return values
 
 
+def _cells(path: Path, number: int, line: str) -> list[str]:
+    try:
+        return next(csv.reader([line]))
+    except csv.Error as error:
+        raise InputError(path, f"line {number}", None, f"no row of a table: {error}") from None
+
+
 def _node(pressures: list[float], levels: tuple[float, float, float]) -> int | None:
     near = np.abs(np.subtract.outer(pressures, levels)) < SAME_PRESSURE
     if not near.any(axis=1).all():
         return None
     i, j, k = near.argmax(axis=1)
-    return int(9 * i + 3 * j + k)
+    return node_index(int(i), int(j), int(k))
 
 
 def _check_scale(path: Path, tips: FloatArray, length: float) -> None:

@@ -15,12 +15,23 @@ from beamopt.section.grid import FloatArray
 __all__ = [
     "HEXAHEDRON_EDGES",
     "HEXAHEDRON_NODES",
+    "NODES",
     "Workspace",
     "loss",
+    "node_index",
     "pressure_grid",
     "rms_distance",
     "workspace_of",
 ]
+
+
+NODES = 27
+"""Pressure combinations of a workspace: three levels of three supplies."""
+
+
+def node_index(i: int, j: int, k: int) -> int:
+    """Place in `pressure_grid`'s order of the levels i, j, k (0…2) of supplies 1, 2, 3."""
+    return 9 * i + 3 * j + k
 
 
 def pressure_grid(levels: Sequence[float]) -> FloatArray:
@@ -53,12 +64,12 @@ def _vtk_order() -> list[tuple[int, int, int]]:
     return [*ends, *edges, *faces, (1, 1, 1)]
 
 
-HEXAHEDRON_NODES: NDArray[np.int64] = np.array([9 * i + 3 * j + k for i, j, k in _vtk_order()])
+HEXAHEDRON_NODES: NDArray[np.int64] = np.array([node_index(*at) for at in _vtk_order()])
 """(27,) index in `pressure_grid`'s order of each node in VTK's (cell type 29)."""
 
 HEXAHEDRON_EDGES: NDArray[np.int64] = np.array(
     [
-        [9 * i + 3 * j + k for i, j, k in edge]
+        [node_index(*at) for at in edge]
         for a in (0, 2)
         for b in (0, 2)
         for edge in (
@@ -83,7 +94,7 @@ class Workspace:
     tips: FloatArray
 
     def __post_init__(self) -> None:
-        if self.tips.shape != (27, 3):
+        if self.tips.shape != (NODES, 3):
             raise ValueError(f"tips have shape {self.tips.shape}: expected (27, 3)")
         low, middle, high = self.levels
         if not low < middle < high:

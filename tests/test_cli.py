@@ -13,8 +13,9 @@ import pytest
 from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
 from beamopt.design import load_design
+from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
-from tests.validation.resume import command
+from tests.validation.resume import command, content
 
 SHORT = ("--set", "search.generations=2")
 DRAWN = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
@@ -86,9 +87,38 @@ def test_show_draws_and_says_where(here: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_show_a_run_over_its_target(here: Path) -> None:
-    assert run(["optimize", "random-section", "--out", "run", *SHORT]) == 0
-    assert run(["show", "run", "--out", "over.png"]) == 0
-    assert (here / "over.png").read_bytes().startswith(b"\x89PNG")
+    optimize(load_scene("random-section", ["search.generations=1"]), here / "run", figures=False)
+    before = content(here / "run")
+    assert run(["show", "run"]) == 0
+    assert (here / "run.png").read_bytes().startswith(b"\x89PNG")
+    assert content(here / "run") == before
+
+
+HOSTILE = {
+    "deep.json": b"[" * 100_000,
+    "deep.toml": b"a = " + b"[" * 100_000,
+    "digits.json": b'{"schema": ' + b"1" * 5000 + b"}",
+    "digits.toml": b"a = " + b"1" * 5000,
+    "nul.toml": b'[target]\nkind = "section"\nfile = "a\\u0000b"',
+    "cell.csv": b"p1,p2,p3,x,y,z\n" + b"1" * 200_000,
+    "latin.toml": b"name = '\xe9'",
+}
+
+
+@pytest.mark.parametrize("name", list(HOSTILE))
+def test_hostile_files(name: str, here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / name).write_bytes(HOSTILE[name])
+    if name.endswith(".csv"):
+        scene = f'[target]\nkind = "workspace"\nfile = "{name}"'
+        (here / "scene.toml").write_text(scene)
+    call = ["tips", name] if name.endswith(".json") else ["optimize", name]
+    complaint(["optimize", "scene.toml"] if name.endswith(".csv") else call, capsys)
+    assert not (here / "runs").exists()
+
+
+def test_a_byte_order_mark_is_no_matter(here: Path) -> None:
+    (here / "bom.json").write_bytes(b"\xef\xbb\xbf" + DRAWN.read_bytes())
+    assert run(["tips", "bom.json"]) == 0
 
 
 def test_scenes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,10 +150,12 @@ MISTAKES = [
     (["tips", str(DRAWN), "--pressures", "1,2,nan"], "three numbers"),
     (["show", "absent.json"], "absent.json"),
     (["show", str(DRAWN), "--out", "figure.gif"], ".png, .svg, .pdf"),
-    (["show", str(DRAWN), "--out", "no/such/folder/f.png"], "no such file or directory"),
+    (["show", str(DRAWN), "--out", "no/such/folder/f.png"], "no/such/folder: no such folder"),
     (["init", "x.toml", "--scene", "nope"], "random-section"),
     (["study", "--out", "s", "--iterations", "0"], "--iterations"),
     (["study", "--out", "s", "--set", "search.generations=many"], "search.generations"),
+    (["study", "--out", "s", "--set", "search.mutation=direct"], "a study decides"),
+    (["init", "no/such/x.toml"], "no/such"),
 ]
 
 
@@ -154,7 +186,7 @@ def test_ctrl_c_leaves_a_valid_run(here: Path) -> None:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         said, _ = process.communicate(timeout=60)
-    assert process.returncode == 0
+    assert process.returncode == 130
     assert "interrupted" in said
     assert "--resume" in said
     load_design(here / "run" / "best.json")

@@ -115,7 +115,7 @@ BAD: list[tuple[str, Any, str]] = [
         lambda d: (d.pop("drawing"), d.update(feature_points={"x": [1], "y": [], "type": [0]})),
         "1, 0, 1 entries",
     ),
-    ("without material", lambda d: d.update(drawing=_everything()), "material must be left"),
+    ("no material", lambda d: d.update(drawing=_everything()), "too little to bend"),
 ]
 
 
@@ -152,7 +152,7 @@ def test_other_files_are_refused_in_one_line(tmp_path: Path) -> None:
     for name, said in (
         ("list.json", "JSON object"),
         ("binary.json", "text file"),
-        ("absent.json", "No such file"),
+        ("absent.json", "no such file"),
     ):
         with pytest.raises(InputError, match=said):
             load_design(tmp_path / name)

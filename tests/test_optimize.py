@@ -7,8 +7,9 @@ import pytest
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason
-from beamopt.optimize import optimize
+from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
 from tests.validation.resume import content
 
@@ -107,6 +108,7 @@ def test_leftovers_of_a_kill_are_cleared_away(tmp_path: Path) -> None:
     ("overrides", "named"),
     [
         (["search.seed=1"], "search.seed = 0"),
+        (["grid.stop=350"], "grid.stop = 360"),
         (["grid.radial=64"], "grid.radial = 128"),
         (["search.mutation=weighted"], "search.mutation = 'direct'"),
     ],
@@ -135,7 +137,7 @@ def test_a_changed_target_file_does_not_go_on(tmp_path: Path) -> None:
 def test_folders_with_something_else_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("precious")
     for resume in (False, True):
-        with pytest.raises(InputError, match=r"resume|no run folder"):
+        with pytest.raises(InputError, match=r"resume|nothing to go on with"):
             optimize(SCENE, tmp_path, resume=resume)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
@@ -164,3 +166,40 @@ def test_a_sector_and_few_points_can_be_searched() -> None:
     result = optimize(load_scene("random-section", ranged))
     assert result.history[-1].index == 15
     assert isinstance(result.scene, Scene)
+
+
+def test_nothing_but_air_is_a_result_that_says_so(tmp_path: Path) -> None:
+    keys = ["section.feature_points=1", "section.material_probability=0", "search.generations=2"]
+    result = optimize(load_scene("hand-drawn-section", keys), tmp_path / "run")
+    assert result.status is StopReason.NOTHING
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["status"] == "no candidate could be judged"
+    assert summary["best"]["status"] == "the section has no material"
+    assert not (tmp_path / "run" / "best.json").exists()
+    with pytest.raises(InputError, match="no material"):
+        optimize(load_scene("random-section", keys))
+
+
+def test_another_processs_files_are_not_touched(tmp_path: Path) -> None:
+    """Only who holds the journal's lock writes, and only our own leftovers are cleared away."""
+    optimize(SCENE, tmp_path / "run", figures=False)
+    for name in (".best.json.12.tmp", ".notes.tmp", ".mine.txt.1.tmp"):
+        (tmp_path / "run" / name).write_text("x")
+    with Journal(tmp_path / "run" / "journal.jsonl"), pytest.raises(InputError, match="another"):
+        optimize(SCENE, tmp_path / "run", resume=True, figures=False)
+    assert (tmp_path / "run" / ".best.json.12.tmp").exists()
+    optimize(SCENE, tmp_path / "run", resume=True, figures=False)
+    held = {path.name for path in (tmp_path / "run").iterdir()}
+    assert ".best.json.12.tmp" not in held
+    assert {".notes.tmp", ".mine.txt.1.tmp"} <= held
+
+
+def test_a_time_budget_goes_on_where_the_last_one_ended(tmp_path: Path) -> None:
+    """What is on record is taken whole, however little time there is for more."""
+    optimize(SCENE, tmp_path / "run", figures=False)
+    keys = ["search.generations=50", "stop.seconds=0"]
+    result = optimize(
+        load_scene("hand-drawn-section", keys), tmp_path / "run", resume=True, figures=False
+    )
+    assert result.status is StopReason.SECONDS
+    assert result.history[-1].index == 6

@@ -37,7 +37,7 @@ def test_columns_are_matched_by_name_and_comments_left_out(tmp_path: Path) -> No
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
-    tips = [*np.random.default_rng(1).normal(size=(27, 3)), 0, 0, 100]
+    tips = np.random.default_rng(1).normal(size=(27, 3)) + np.array([0, 0, 100])
     np.testing.assert_array_equal(read(tips_csv(pressure_grid(LEVELS), tips), tmp_path), tips)
 
 

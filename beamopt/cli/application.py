@@ -22,7 +22,7 @@ app = typer.Typer(
 
 SceneName = Annotated[str, typer.Argument(help="Scene file, or the name of a bundled scene.")]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed; replaces the scene's.")]
-Workers = Annotated[int, typer.Option(min=1, max=256, help="How many sections at once.")]
+Workers = Annotated[int, typer.Option(min=1, max=256, help="Sections judged at once.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
 Overrides = Annotated[
     list[str] | None,
@@ -52,8 +52,8 @@ def study(
     out: Annotated[Path, typer.Option(help="Folder of the study.")],
     iterations: Annotated[int, typer.Option(min=1, max=1000, help="Runs of each kind.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first iteration.")] = 0,
-    workers: Workers = 1,
-    resume: Resume = False,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Searches at once.")] = 1,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study there.")] = False,
     overrides: Overrides = None,
 ) -> None:
     """Repeat the paper's table: three targets, four methods, several initial populations."""
@@ -84,7 +84,10 @@ def show(
     design: Annotated[
         Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
     ],
-    out: Annotated[Path | None, typer.Option(help="Figure to write: .png, .svg or .pdf.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Figure to write (.png, .svg, .pdf); NAME.png here if left out."),
+    ] = None,
 ) -> None:
     """Draw a design's section beside its workspace, and the section in the terminal."""
     from beamopt.cli.show import show_command
@@ -114,11 +117,9 @@ def init(
 def run(arguments: Sequence[str]) -> int:
     """Run one command; returns the exit code."""
     try:
-        app(list(arguments), standalone_mode=False)
+        code = app(list(arguments), standalone_mode=False)
     except InputError as error:
         return _complain(str(error))
-    except typer.Exit as ended:
-        return ended.exit_code
     except (typer.Abort, KeyboardInterrupt):
         return _complain("interrupted", code=130)
     except BrokenPipeError:
@@ -127,10 +128,11 @@ def run(arguments: Sequence[str]) -> int:
         place = f"{error.filename}: " if error.filename else ""
         return _complain(f"{place}{(error.strerror or str(error)).lower()}")
     except Exception as error:
-        if hasattr(error, "format_message"):  # what the option parser refuses
+        # what the option parser refuses; its exception has no public name that stays
+        if hasattr(error, "format_message"):
             return _complain(error.format_message())
         raise
-    return 0
+    return code if isinstance(code, int) else 0  # what a command gave typer.Exit
 
 
 def _complain(text: str, code: int = 2) -> int:

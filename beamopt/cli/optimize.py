@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import typer
+
 from beamopt.cli.progress import console, progress_bar
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
-from beamopt.optimize import optimize
+from beamopt.judge import Status
+from beamopt.optimisation import optimize
 from beamopt.result import Optimisation
 from beamopt.scene import load_scene
 
 __all__ = ["optimize_command"]
+
+INTERRUPTED = 130  # exit code, as shells have it
 
 
 def optimize_command(
@@ -44,26 +50,42 @@ def optimize_command(
             scene, folder, resume=resume, executor=executor, workers=workers, callback=show
         )
     _report(result, folder)
+    if result.status is StopReason.INTERRUPTED:
+        asked = shlex.join([scene_name, *(f"--set={key}" for key in [*overrides, *seeded])])
+        console.print(f"go on with: beamopt optimize {asked} --out {folder} --resume", markup=False)
+        raise typer.Exit(INTERRUPTED)
+    if result.verdict.status is not Status.JUDGED:
+        raise typer.Exit(1)
 
 
 def _report(result: Optimisation, folder: Path) -> None:
-    verdict, section = result.verdict, result.best.section
-    chambers = " + ".join(str(count) for count in section.pieces.chambers)
-    final = result.history[-1].best.verdict
-    lines = [
-        ("ended", f"{result.status.value}, {result.evaluations} sections judged"),
-        ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final.L:.6g})"),
-        ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
-        ("K", f"{verdict.K:.6g}"),
-        ("T = L + K", f"{verdict.T:.6g}"),
-        ("islands", f"{section.pieces.islands} of material; chambers per supply {chambers}"),
-        ("time", f"{result.seconds:.2f} s"),
-        ("files", f"{folder}/ (best.json, best.png, tips.csv, convergence.png, …)"),
-    ]
+    lines = [("ended", f"{result.status.value}; {result.evaluations} sections judged")]
+    if result.verdict.status is Status.JUDGED:
+        lines += _found(result)
+    else:
+        lines.append(("no design", result.verdict.status.value))
+    lines.append(("time", f"{result.seconds:.2f} s"))
+    lines.append(("files", f"{folder}/ ({', '.join(_worth_a_look(folder))}, …)"))
     for warning in result.target.warnings:
         console.print(f"[yellow]note[/]: {warning}")
     console.print(f"[bold]{result.scene.name}[/], seed {result.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
-    if result.status is StopReason.INTERRUPTED:
-        console.print(f"  {'go on':<13}beamopt optimize … --out {folder} --resume", markup=False)
+
+
+def _found(result: Optimisation) -> list[tuple[str, str]]:
+    verdict, pieces = result.verdict, result.best.section.pieces
+    final = result.history[-1].best.verdict.L
+    chambers = " + ".join(str(count) for count in pieces.chambers)
+    return [
+        ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
+        ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
+        ("K", f"{verdict.K:.6g}"),
+        ("T = L + K", f"{verdict.T:.6g}"),
+        ("islands", f"{pieces.islands} of material; chambers per supply {chambers}"),
+    ]
+
+
+def _worth_a_look(folder: Path) -> list[str]:
+    names = ("best.json", "best.png", "tips.csv", "convergence.png", "summary.json")
+    return [name for name in names if (folder / name).exists()]

@@ -11,7 +11,7 @@ from rich.text import Text
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.plot.figures import design_figure
+from beamopt.plot.figures import design_figure, design_title
 from beamopt.plot.section import OUTSIDE, section_pixels
 from beamopt.plot.style import TYPE_COLOURS, save_figure
 from beamopt.section.cross_section import CrossSection
@@ -27,7 +27,7 @@ SYMBOLS = "·123 "
 def show_command(path: Path, out: Path | None) -> None:
     """Draw a design, or the best design of a run over its target."""
     file = path / "best.json" if path.is_dir() else path
-    figure_path = out or file.with_suffix(".png")
+    figure_path = out or Path(f"{path.resolve().stem}.png")
     if figure_path.suffix not in ENDINGS:
         raise InputError("--out", "", str(figure_path), f"must end in {', '.join(ENDINGS)}")
     design = load_design(file)
@@ -36,8 +36,8 @@ def show_command(path: Path, out: Path | None) -> None:
     if path.is_dir() and beside.exists():
         length = design.actuator.length
         target = read_target(beside, design.pressures, length).workspace
-    title = str(design.notes.get("scene", file.stem))
-    save_figure(design_figure(design, target, title), figure_path)
+    figure = design_figure(design, target, design_title(design) or file.stem)
+    save_figure(figure, figure_path)
     console.print(_terminal_picture(design.section))
     legend = Text("material ", style="dim")
     for supply, colour in enumerate(TYPE_COLOURS[1:], 1):

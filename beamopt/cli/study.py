@@ -9,7 +9,7 @@ from rich.table import Table
 
 from beamopt.cli.progress import console, progress_bar
 from beamopt.study.plan import TARGETS, Plan
-from beamopt.study.run import study
+from beamopt.study.run import run_study
 from beamopt.study.table import SUMMARIES, TITLES, Outcome
 
 __all__ = ["study_command"]
@@ -26,7 +26,7 @@ def study_command(
         def show(outcome: Outcome, done: int, total: int) -> None:
             bar.update(task, completed=done, said=f"{outcome.run.name} L {outcome.final.L:.4g} mm²")
 
-        outcomes = study(out, plan, workers=workers, resume=resume, callback=show)
+        outcomes = run_study(out, plan, workers=workers, resume=resume, callback=show)
     table = Table(title=f"L in mm² over {len(outcomes)} runs")
     table.add_column("target")
     for name in SUMMARIES:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
+from weakref import WeakSet
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
@@ -27,6 +28,19 @@ SCHEMA = "beamopt-journal/1"
 LOCK_PATIENCE = 2.0  # s; a process that was just killed may still be letting go
 
 
+_OPEN: WeakSet[Journal] = WeakSet()
+
+
+def _let_go() -> None:
+    """In a forked child: a worker that outlives its parent must not keep the parent's locks."""
+    for journal in _OPEN:
+        journal.close()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_let_go)
+
+
 class Journal:
     """A journal file, open for going on; use it as a context.
 
@@ -38,7 +52,8 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._stream = path.open("ab", buffering=0)
+        self._stream = path.open("ab")
+        _OPEN.add(self)
         try:
             self._lock()
             self._lines = self._whole_lines()
@@ -48,7 +63,7 @@ class Journal:
                 expected = f'must be {{"schema": "{SCHEMA}"}}'
                 raise InputError(path, "line 1", self._lines[0], expected)
         except BaseException:
-            self._stream.close()
+            self.close()
             raise
 
     def __enter__(self) -> Journal:
@@ -61,6 +76,10 @@ class Journal:
         trace: TracebackType | None,
     ) -> None:
         os.fsync(self._stream.fileno())
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the file, and of its lock if no other process holds it too."""
         self._stream.close()
 
     def _lock(self) -> None:
@@ -119,6 +138,7 @@ class Journal:
     def _append(self, record: dict[str, object]) -> None:
         line = json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n"
         self._stream.write(line.encode())
+        self._stream.flush()
 
 
 def _entry(points: FeaturePoints, verdict: Verdict) -> list[object]:

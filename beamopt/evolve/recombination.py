@@ -23,7 +23,7 @@ def ranged(
     as such. Whether the interval runs up or round past the start makes no difference: swapping
     the rest gives the same two offspring.
     """
-    span = np.radians(grid.stop - grid.start)
+    span = np.radians(grid.span)
     low, high = np.sort(rng.uniform(0, span, 2))
     ours, theirs = (
         (angle >= low) & (angle <= high) for angle in (_from_start(a, grid), _from_start(b, grid))
@@ -39,12 +39,14 @@ def fixed(
     Nearest by angular distance, the lower index first among equals. Parents of different size swap
     that share of the smaller one.
     """
-    span = np.radians(grid.stop - grid.start)
+    span = np.radians(grid.span)
     angle = rng.uniform(0, span)
     count = round(share * min(len(a), len(b)))
     ours, theirs = np.zeros(len(a), dtype=np.bool_), np.zeros(len(b), dtype=np.bool_)
     for chosen, points in ((ours, a), (theirs, b)):
-        away = np.abs(np.mod(_from_start(points, grid) - angle + np.pi, 2 * np.pi) - np.pi)
+        away = np.abs(_from_start(points, grid) - angle)
+        if grid.is_full_ring:
+            away = np.minimum(away, 2 * np.pi - away)
         chosen[np.argsort(away, kind="stable")[:count]] = True
     return a.taking(~ours, b, theirs), b.taking(~theirs, a, ours)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason, why_stop
-from beamopt.judge import Judge, judge_all
+from beamopt.judge import Judge, Status, judge_all
 from beamopt.scene import Scene
 
 __all__ = ["Ended", "run"]
@@ -55,31 +55,35 @@ def run(
     InputError : the journal is not this search's.
 
     """
-    started = time.perf_counter()
+    started = asking = time.perf_counter()
     search = GeneticAlgorithm(scene)
     history: list[Generation] = []
 
-    def told(record: Generation | None) -> StopReason | None:
+    def told(record: Generation | None, seconds: float) -> StopReason | None:
         if record is None:
             return None
         history.append(record)
         if callback is not None:
             callback(record)
-        return why_stop(scene, search, history, time.perf_counter() - started)
+        return why_stop(scene, search, history, seconds)
 
     reason: StopReason | None = None
     try:
         for verdicts in journal.replay(search) if journal is not None else ():
-            reason = told(search.tell(verdicts))
+            # what was judged already takes none of the time that this call may take
+            reason = told(search.tell(verdicts), 0.0)
             if reason is not None:
                 break
+        asking = time.perf_counter()
         while reason is None:
             verdicts = judge_all(judge, search.ask(), executor, workers)
             if journal is not None:
                 journal.write(search, verdicts)
-            reason = told(search.tell(verdicts))
+            reason = told(search.tell(verdicts), time.perf_counter() - asking)
     except KeyboardInterrupt:
         if not history:
             raise
     status = reason or StopReason.INTERRUPTED
+    if reason is not None and history[-1].best_ever.verdict.status is not Status.JUDGED:
+        status = StopReason.NOTHING
     return Ended(status, tuple(history), time.perf_counter() - started)

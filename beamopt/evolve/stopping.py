@@ -19,6 +19,7 @@ class StopReason(Enum):
     SECONDS = "the time allowed is used up"
     STALL = "no lower L for as many generations as allowed"
     LOSS = "the loss asked for is reached"
+    NOTHING = "no candidate could be judged"
     INTERRUPTED = "interrupted; --resume goes on"
 
 
@@ -27,7 +28,7 @@ def why_stop(
 ) -> StopReason | None:
     """The reason to stop after the last generation in `history`, or None to go on.
 
-    seconds : time this call has run so far.
+    seconds : time that judging anew has taken so far.
     """
     stop, last = scene.stop, history[-1]
     if stop.loss is not None and stop.loss >= last.best_ever.verdict.L:
@@ -42,6 +43,6 @@ def why_stop(
         before = history[-1 - stop.stall].best_ever.verdict.L
         if before <= last.best_ever.verdict.L:
             return StopReason.STALL
-    if stop.seconds is not None and seconds >= stop.seconds:
+    if stop.seconds is not None and seconds > stop.seconds:
         return StopReason.SECONDS
     return None

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
-from beamopt.plot.style import SERIES_COLOURS, new_figure, styled
+from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
 from beamopt.rod.arc import arc_centreline
 from beamopt.section.grid import FloatArray
@@ -18,7 +18,13 @@ from beamopt.workspace import Workspace
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["convergence_figure", "design_figure", "target_figure"]
+__all__ = ["convergence_figure", "design_figure", "design_title"]
+
+
+def design_title(design: Design) -> str:
+    """Scene and loss of a design that a search made; "" for another one."""
+    name, loss = design.notes.get("scene"), design.notes.get("L")
+    return f"{name}: L = {loss:.4g} mm²" if name and isinstance(loss, float) else ""
 
 
 @styled
@@ -42,24 +48,13 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
 
 
 @styled
-def target_figure(target: Workspace, title: str = "") -> Figure:
-    """A target that no section belongs to, from above and diagonally."""
-    figure = new_figure(9.0, 4.6)
-    draw_from_above(figure.add_subplot(121), None, target)
-    draw_diagonal(figure.add_subplot(122, projection="3d"), None, target)
-    if title:
-        figure.suptitle(title)
-    return figure
-
-
-@styled
 def convergence_figure(
     lowest: Sequence[float], mean: FloatArray, ever: Sequence[float], title: str = ""
 ) -> Figure:
     """L over generations: lowest and mean of the population, lowest ever [mm²]."""
     figure = new_figure(6.4, 4.0)
     axes = figure.add_subplot()
-    axes.plot(mean, color="#999999", lw=1.0, label="mean of the population")
+    axes.plot(mean, color=ASIDE_COLOUR, lw=1.0, label="mean of the population")
     axes.plot(lowest, color=SERIES_COLOURS[0], lw=1.6, label="lowest of the population")
     axes.plot(ever, color=SERIES_COLOURS[1], lw=1.2, ls="--", label="lowest so far")
     axes.set(yscale="log", xlabel="generation", ylabel="loss L [mm²]", title=title)

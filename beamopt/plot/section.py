@@ -7,30 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.plot.style import SUPPLY_COLOURS, TYPE_COLOURS
+from beamopt.plot.style import OUTLINE_COLOUR, SUPPLY_COLOURS, TYPE_COLOURS
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import SUPPLIES
-from beamopt.section.grid import PolarGrid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["draw_section", "element_at"]
+__all__ = ["OUTSIDE", "draw_section", "section_pixels"]
 
 PIXELS = 720
 OUTSIDE = -1
-
-
-def element_at(
-    grid: PolarGrid, x: NDArray[np.float64], y: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
-    """Row and column of the element under each point, and whether there is one."""
-    radius = np.hypot(x, y)
-    turned = np.mod(np.degrees(np.arctan2(y, x)) - grid.start, 360.0)
-    row = np.searchsorted(grid.edges, radius, side="right") - 1
-    column = np.floor(turned * grid.angular / (grid.stop - grid.start)).astype(np.int64)
-    inside = (row >= 0) & (row < grid.radial) & (column < grid.angular)
-    return row, column, inside
 
 
 def section_pixels(section: CrossSection, pixels: int) -> NDArray[np.int64]:
@@ -38,7 +25,7 @@ def section_pixels(section: CrossSection, pixels: int) -> NDArray[np.int64]:
     grid = section.grid
     centres = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * grid.outer_radius
     x, y = np.meshgrid(centres, centres[::-1])
-    row, column, inside = element_at(grid, x, y)
+    row, column, inside = grid.elements_at(x, y)
     types = np.full(x.shape, OUTSIDE, dtype=np.int64)
     types[inside] = section.labels[row[inside], column[inside]]
     return types
@@ -56,7 +43,7 @@ def draw_section(axes: Axes, section: CrossSection, title: str = "") -> None:
     axes.imshow(image, extent=(-outer, outer, -outer, outer), interpolation="none", zorder=1)
     angles = np.linspace(grid.angles[0], grid.angles[-1], 361)
     for radius in (grid.inner_radius, outer):
-        axes.plot(radius * np.cos(angles), radius * np.sin(angles), color="#404040", lw=0.8)
+        axes.plot(radius * np.cos(angles), radius * np.sin(angles), color=OUTLINE_COLOUR, lw=0.8)
     _number_chambers(axes, section)
     cx, cy = section.moments.centroid
     axes.plot(cx, cy, "+", color="black", ms=7, mew=1.0, zorder=3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
@@ -17,8 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
+    "ASIDE_COLOUR",
     "DESIGN_COLOUR",
-    "MATERIAL_COLOUR",
+    "OUTLINE_COLOUR",
     "SERIES_COLOURS",
     "SUPPLY_COLOURS",
     "TARGET_COLOUR",
@@ -37,6 +39,8 @@ TYPE_COLOURS = (MATERIAL_COLOUR, *SUPPLY_COLOURS)
 """Material grey, supplies red, yellow, blue: apart in lightness too, and numbered where drawn."""
 
 DESIGN_COLOUR = "#303030"
+OUTLINE_COLOUR = "#404040"
+ASIDE_COLOUR = "#8c8c8c"  # for lines that are not the point of a figure
 TARGET_COLOUR = "#e0218a"
 SERIES_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#8a5aa8")
 """For lines that stand for methods (after Okabe and Ito)."""
@@ -59,12 +63,17 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        import matplotlib as mpl
-
-        with mpl.rc_context(_RC):
+        with _our_settings():
             return draw(*args, **kwargs)
 
     return drawn
+
+
+def _our_settings() -> AbstractContextManager[None]:
+    """Matplotlib's defaults and ours, whatever the person's own settings are."""
+    from matplotlib import style
+
+    return style.context(["default", _RC])
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -76,10 +85,8 @@ def new_figure(width: float, height: float) -> Figure:
 
 def save_figure(figure: Figure, *paths: Path) -> None:
     """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes."""
-    import matplotlib as mpl
-
     dateless: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    with mpl.rc_context(_RC):
+    with _our_settings():
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # laid out now, once for all endings
         for path in paths:

@@ -44,7 +44,8 @@ class FeaturePoints:
             raise ValueError(f"x, y, type have {xs.size}, {ys.size}, {types.size} entries")
         if not (np.isfinite(xs).all() and np.isfinite(ys).all()):
             raise ValueError("x, y: every position must be a finite number of mm")
-        if types.size and not np.isin(types, (MATERIAL, *SUPPLIES)).all():
+        whole = types.dtype.kind in "iu" or (np.mod(types, 1) == 0).all()
+        if types.size and not (whole and types.min() >= MATERIAL and types.max() <= SUPPLIES[-1]):
             raise ValueError("type: 0 (material) or 1, 2, 3 (supply)")
         for name, array in (("x", xs), ("y", ys), ("type", types.astype(np.uint8))):
             array.setflags(write=False)

@@ -45,13 +45,19 @@ class PolarGrid:
         counts = (self.radial, self.angular)
         if not all(count == int(count) and count >= 1 for count in counts):
             raise ValueError(f"radial, angular = {counts}: whole numbers from 1 on")
-        if not 0 < self.stop - self.start <= 360:
+        if not 0 < self.span <= 360:
             raise ValueError(f"stop = {self.stop}: must be 0…360 degrees above {self.start}")
+
+    @property
+    def span(self) -> float:
+        """Angle from start to stop [degree]; 360 exactly where only rounding is missing."""
+        between = self.stop - self.start
+        return 360.0 if abs(between - 360.0) < 1e-9 else between
 
     @property
     def is_full_ring(self) -> bool:
         """Whether the last column is the first one's neighbour."""
-        return self.stop - self.start == 360
+        return self.span == 360
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -61,12 +67,11 @@ class PolarGrid:
     @cached_property
     def area(self) -> float:
         """Area of the whole ring or sector [mm²]."""
-        span = np.radians(self.stop - self.start)
-        return float(span * (self.outer_radius**2 - self.inner_radius**2) / 2)
+        return float(np.radians(self.span) * (self.outer_radius**2 - self.inner_radius**2) / 2)
 
     @property
     def element_area(self) -> float:
-        """Area of one element [mm²]."""
+        """Area ΔA of one element [mm²]."""
         return self.area / (self.radial * self.angular)
 
     @cached_property
@@ -79,13 +84,20 @@ class PolarGrid:
     @cached_property
     def angles(self) -> FloatArray:
         """(angular + 1,) angles between the columns [rad]."""
-        return np.radians(np.linspace(self.start, self.stop, self.angular + 1))
+        columns = np.arange(self.angular + 1)
+        return np.asarray(np.radians(self.start + columns * self.span / self.angular))
 
     @cached_property
     def radial_integrals(self) -> FloatArray:
         """(3, radial): ∫ rⁿ⁺¹ dr over each row for n = 0, 1, 2."""
-        powers = np.array([2, 3, 4])[:, None]
-        return np.asarray(np.diff(self.edges**powers, axis=1) / powers)
+        a, b = self.edges[:-1], self.edges[1:]
+        # b² − a² is the same for every row: without the cancellation of taking differences
+        inner, outer = self.inner_radius, self.outer_radius
+        squares = (outer - inner) * (outer + inner) / self.radial
+        area = np.full(self.radial, squares / 2)
+        first = squares / (a + b) * (a * a + a * b + b * b) / 3
+        second = squares * (a * a + b * b) / 4
+        return np.stack([area, first, second])
 
     @cached_property
     def angular_integrals(self) -> FloatArray:
@@ -100,7 +112,7 @@ class PolarGrid:
     @cached_property
     def centroid_radii(self) -> FloatArray:
         """(radial,) distance of each row's element centroids from the axis [mm]."""
-        half = np.radians(self.stop - self.start) / self.angular / 2
+        half = np.radians(self.span) / self.angular / 2
         ratio = self.radial_integrals[1] / self.radial_integrals[0]
         return np.asarray(ratio * np.sinc(half / np.pi))
 
@@ -115,7 +127,12 @@ class PolarGrid:
         """(2, radial, angular): x and y of the element centroids [mm]."""
         return self.centroid_directions[:, None, :] * self.centroid_radii[None, :, None]
 
-    def columns(self, degrees: FloatArray) -> FloatArray:
-        """Angles [degree] as fractional columns; on a full ring taken round into 0…angular."""
-        column = (degrees - self.start) * self.angular / (self.stop - self.start)
-        return np.mod(column, self.angular) if self.is_full_ring else column
+    def elements_at(
+        self, x: FloatArray, y: FloatArray
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+        """Row and column of the element under each point [mm], and whether there is one."""
+        turned = np.mod(np.degrees(np.arctan2(y, x)) - self.start, 360.0)
+        row = np.searchsorted(self.edges, np.hypot(x, y), side="right") - 1
+        column = np.floor(turned * self.angular / self.span).astype(np.int64)
+        inside = (row >= 0) & (row < self.radial) & (column < self.angular)
+        return row, column, inside

@@ -53,6 +53,12 @@ class Moments:
         return np.stack([np.stack([ixx, -ixy], -1), np.stack([-ixy, iyy], -1)], -2)
 
     @property
+    def is_stiff(self) -> NDArray[np.bool_]:
+        """(…,) whether there is material, and enough of it for a positive bending stiffness."""
+        (i11, i12), (_, i22) = np.moveaxis(self.second_moments, (-2, -1), (0, 1))
+        return np.asarray((self.area > 0) & (i11 > 0) & (i11 * i22 > i12 * i12))
+
+    @property
     def chamber_areas(self) -> FloatArray:
         """(…, 3) area A_i of each supply's chambers [mm²]."""
         return np.asarray(self.raw[..., 1:, 0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from beamopt.errors import InputError
 from beamopt.scene import Scene, load_scene
 
 __all__ = ["COMBINATIONS", "TARGETS", "Plan", "Run"]
@@ -16,6 +17,9 @@ COMBINATIONS = {
     "RD": ("range", "direct"),
     "RW": ("range", "weighted"),
 }
+
+
+DECIDED = ("search.seed", "search.recombination", "search.mutation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +56,22 @@ class Plan:
     iterations : runs of each target and combination.
     seed : seed of the first iteration; the others count up from it.
     overrides : keys replaced in every scene.
+
+    Raises
+    ------
+    InputError : an override of what the study itself decides.
+
     """
 
     iterations: int = 4
     seed: int = 0
     overrides: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for override in self.overrides:
+            key = override.partition("=")[0].strip()
+            if key in DECIDED:
+                raise InputError("--set", "", override, f"a study decides {key} for every search")
 
     def runs(self) -> Sequence[Run]:
         """Every run, in the order of the table."""

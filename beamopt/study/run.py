@@ -3,33 +3,29 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
-import os
-import signal
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
-from multiprocessing.connection import wait
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
 from beamopt.errors import InputError
+from beamopt.evolve.stopping import StopReason
 from beamopt.files import json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import read_json
-from beamopt.optimize import optimize
-from beamopt.provenance import THREAD_SETTINGS
+from beamopt.optimisation import optimize
 from beamopt.study.plan import Plan, Run
+from beamopt.study.pool import processes
 from beamopt.study.report import write_report
 from beamopt.study.table import Outcome
 
-__all__ = ["study"]
+__all__ = ["run_study"]
 
 SCHEMA = "beamopt-study/1"
 
 
-def study(
+def run_study(
     out: str | Path,
     plan: Plan | None = None,
     *,
@@ -78,6 +74,8 @@ def study(
 def run_one(run: Run, folder: Path) -> Outcome:
     """Run one search, or go on with it where it was left."""
     result = optimize(run.scene(), folder / "runs" / run.name, resume=True, figures=False)
+    if result.status is StopReason.INTERRUPTED:
+        raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
     last = result.history[-1]
     return Outcome(
         run,
@@ -94,39 +92,10 @@ def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outco
     if workers == 1:
         yield from (run_one(run, folder) for run in runs)
         return
-    with _processes(workers) as executor:
+    with processes(workers) as executor:
         futures = [executor.submit(run_one, run, folder) for run in runs]
         for future in as_completed(futures):
             yield future.result()
-
-
-@contextmanager
-def _processes(workers: int) -> Iterator[Executor]:
-    """Fresh processes with one thread each; on Ctrl-C the searches under way are finished."""
-    before = {name: os.environ.get(name) for name in THREAD_SETTINGS}
-    os.environ.update(dict.fromkeys(THREAD_SETTINGS, "1"))
-    pool = ProcessPoolExecutor(
-        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_first_process
-    )
-    try:
-        yield pool
-    finally:
-        pool.shutdown(cancel_futures=True)
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
-
-
-def _follow_first_process() -> None:
-    """Leave Ctrl-C, which goes to every process of a terminal, to the first one; end with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    first = multiprocessing.parent_process()
-    if first is not None:
-
-        def end() -> None:
-            wait([first.sentinel])
-            os._exit(1)
-
-        threading.Thread(target=end, daemon=True).start()
 
 
 def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
@@ -138,16 +107,11 @@ def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
         "iterations": plan.iterations,
     }
     there = folder / "study.json"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()) and not resume:
-            raise InputError(folder, "", None, "holds files already; --resume goes on with a study")
-        if there.exists():
-            _check_same(there, described)
-        write_atomic(there, json_text(described))
-    except OSError as error:
-        reason = (error.strerror or "can not be written").lower()
-        raise InputError(folder, "", None, f"{reason}; name a folder that can be written") from None
+    claim_folder(folder, there.name, resume=resume)
+    if there.exists():
+        _check_same(there, described)
+    clear_leftovers(folder, {item.name for item in folder.iterdir()} | {there.name})
+    write_atomic(there, json_text(described))
 
 
 def _check_same(there: Path, described: dict[str, Any]) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
 from beamopt.judge import Judge
-from beamopt.plot.style import SERIES_COLOURS, new_figure, styled
+from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
+from beamopt.rod.response import linear_response
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
@@ -27,7 +29,8 @@ COUNTS = (10, 20, 50, 100, 200, 500, 1000)
 
 
 def judge_for(grid: PolarGrid) -> Judge:
-    return Judge(grid, 4, 100.0, 300.0, LEVELS, np.zeros((27, 3)), 1000.0)
+    respond = partial(linear_response, youngs_modulus=300.0)
+    return Judge(grid, 4, 100.0, respond, LEVELS, np.zeros((27, 3)), 1000.0)
 
 
 def candidates(grid: PolarGrid, count: int, points: int = 100) -> list[FeaturePoints]:
@@ -92,25 +95,29 @@ def parts(grid: PolarGrid, batch: list[FeaturePoints]) -> Iterator[Measured]:
 
 
 def growth() -> Iterator[Measured]:
-    by_elements, by_points = [], []
-    for radial, angular in GRIDS:
-        grid = PolarGrid(radial=radial, angular=angular)
-        judge, batch = judge_for(grid), candidates(grid, BATCH)
-        time_each = seconds(lambda judge=judge, batch=batch: judge(batch), 5) / BATCH * 1e3
-        by_elements.append((radial * angular, time_each))
-        yield Measured(f"elements {radial} × {angular}", time_each, "ms")
-    grid = PolarGrid()
-    judge = judge_for(grid)
-    for count in COUNTS:
-        batch = candidates(grid, BATCH, count)
-        time_each = seconds(lambda batch=batch: judge(batch), 5) / BATCH * 1e3
-        by_points.append((count, time_each))
-        yield Measured(f"feature points {count}", time_each, "ms")
-    slope = np.polyfit(*np.log(np.array(by_elements)[1:].T), 1)[0]
-    yield Measured("growth with elements, exponent", float(slope), "1")
-    slope = np.polyfit(*np.log(np.array(by_points).T), 1)[0]
-    yield Measured("growth with feature points, exponent", float(slope), "1")
-    save_growth(_figure(np.array(by_elements), np.array(by_points)), "evaluation")
+    """Times over elements and over feature points, and the straight lines through them."""
+    cases = [(PolarGrid(radial=r, angular=a), 100) for r, a in GRIDS]
+    cases += [(PolarGrid(), count) for count in COUNTS]
+    actions = []
+    for grid, count in cases:
+        judge, batch = judge_for(grid), candidates(grid, BATCH, count)
+        actions.append(partial(judge, batch))
+    rounds = [[seconds(action, 1) for action in actions] for _ in range(7)]  # in turn
+    times = np.median(rounds, axis=0) / BATCH * 1e3
+    elements = np.array([grid.radial * grid.angular for grid, _ in cases[: len(GRIDS)]])
+    by_elements = np.column_stack([elements, times[: len(GRIDS)]])
+    by_points = np.column_stack([COUNTS, times[len(GRIDS) :]])
+    for (radial, angular), (_, each) in zip(GRIDS, by_elements, strict=True):
+        yield Measured(f"elements {radial} × {angular}, 100 feature points", each, "ms")
+    for count, each in by_points:
+        yield Measured(f"feature points {count:.0f}, 128 × 360 elements", each, "ms")
+    for what, table in (("1000 elements", by_elements), ("100 feature points", by_points)):
+        unit = 1000 if "elements" in what else 100
+        # least squares of relative residuals: large cases must not hide small ones
+        slope, fixed = np.polyfit(*table.T, 1, w=1 / table[:, 1])
+        yield Measured(f"growth: fixed part over {what.split(' ', 1)[1]}", fixed, "ms")
+        yield Measured(f"growth: for every {what} more", slope * unit, "ms")
+    save_growth(_figure(by_elements, by_points), "evaluation")
 
 
 @styled
@@ -129,7 +136,7 @@ def _figure(by_elements: np.ndarray, by_points: np.ndarray) -> object:
         by_elements[:, 0],
         middle[1] * by_elements[:, 0] / middle[0],
         ls="--",
-        color="#777777",
+        color=ASIDE_COLOUR,
         label="linear",
     )
     left.legend()

@@ -36,7 +36,7 @@ def report(name: str, measured: Iterable[Measured]) -> None:
         table.add_row(row.what, f"{row.value:.4g}", row.unit)
     Console().print(table)
     REPORTS.mkdir(parents=True, exist_ok=True)
-    cells = [(f'"{row.what}"', row.value, row.unit) for row in rows]
+    cells = [(row.what, row.value, row.unit) for row in rows]
     write_atomic(REPORTS / f"{name}.csv", csv_text("what,value,unit", cells))
 
 

@@ -2,19 +2,19 @@
 
 import numpy as np
 
-from beamopt.judge import Judge
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.phenotype import phenotypes
 from beamopt.workspace import pressure_grid
+from tests.bench.evaluation import judge_for
 from tests.bench.reference import Reference
 
 
 def test_reference_agrees_with_the_kernels() -> None:
     grid = PolarGrid()
     reference = Reference(grid)
-    judge = Judge(grid, 4, 100.0, 300.0, (0.0, 50.0, 100.0), np.zeros((27, 3)), 1000.0)
+    judge = judge_for(grid)
     for seed in range(5):
         rng = np.random.default_rng([seed])
         # off the element centroids: the k-d tree breaks ties at will

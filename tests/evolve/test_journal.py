@@ -1,5 +1,8 @@
 import json
+import os
 import re
+import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -7,7 +10,7 @@ import pytest
 from beamopt.errors import InputError
 from beamopt.evolve import journal as journal_module
 from beamopt.evolve.journal import Journal
-from beamopt.optimize import optimize
+from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=4"])
@@ -90,3 +93,19 @@ def test_two_writers_are_one_too_many(tmp_path: Path, monkeypatch: pytest.Monkey
     path = tmp_path / "journal.jsonl"
     with Journal(path), pytest.raises(InputError, match=re.escape("another process")):
         Journal(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
+def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
+    path = tmp_path / "journal.jsonl"
+    with Journal(path):
+        child = os.fork()
+        if child == 0:
+            time.sleep(20)
+            os._exit(0)
+    try:
+        with Journal(path):
+            pass
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)

@@ -29,7 +29,7 @@ def test_random_points_are_even_over_rows_and_columns() -> None:
     n = 40_000
     points = FeaturePoints.random(grid, n, np.random.default_rng(3))
     row = np.searchsorted(grid.edges, np.hypot(points.x, points.y)) - 1
-    column = np.floor(grid.columns(np.degrees(points.angles))).astype(int)
+    _, column, _ = grid.elements_at(points.x, points.y)
     for index, count in ((row, 8), (column, 10), (row * 10 + column, 80)):
         found = np.bincount(index, minlength=count)
         p = 1 / count

@@ -81,15 +81,15 @@ def test_only_360_degrees_close_the_ring() -> None:
     assert not PolarGrid(stop=359.0).is_full_ring
 
 
-def test_columns_of_a_ring_go_round() -> None:
-    grid = PolarGrid(angular=36, start=5.0, stop=365.0)
-    found = grid.columns(np.array([5.0, 20.0, 364.0, 370.0, -5.0]))
-    np.testing.assert_allclose(found, [0.0, 1.5, 35.9, 0.5, 35.0], atol=1e-12)
-
-
-def test_columns_of_a_sector_do_not_go_round() -> None:
-    grid = PolarGrid(angular=10, start=-10.0, stop=90.0)
-    np.testing.assert_allclose(grid.columns(np.array([-20.0, 0.0, 95.0])), [-1.0, 1.0, 10.5])
+@pytest.mark.parametrize(
+    "grid", [PolarGrid(), PolarGrid(radial=9, angular=17, start=200, stop=320)]
+)
+def test_every_centroid_is_in_its_own_element(grid: PolarGrid) -> None:
+    x, y = grid.centroids
+    row, column, inside = grid.elements_at(x, y)
+    assert inside.all()
+    np.testing.assert_array_equal(row, np.indices(grid.shape)[0])
+    np.testing.assert_array_equal(column, np.indices(grid.shape)[1])
 
 
 @pytest.mark.parametrize(
@@ -99,8 +99,8 @@ def test_columns_of_a_sector_do_not_go_round() -> None:
         ({"inner_radius": 30.0}, "outer_radius = 25.0"),
         ({"inner_radius": 25.0}, "inner_radius = 25.0"),
         ({"inner_radius": float("nan")}, "inner_radius = nan"),
-        ({"radial": 0}, "0 × 360"),
-        ({"angular": -3}, "128 × -3"),
+        ({"radial": 0}, "0, 360"),
+        ({"angular": -3}, "128, -3"),
         ({"stop": 0.0}, "stop = 0.0"),
         ({"stop": 361.0}, "stop = 361.0"),
         ({"start": 90.0, "stop": 45.0}, "stop = 45.0"),
@@ -117,3 +117,19 @@ def test_misuse_names_the_value(keys: dict[str, float], named: str) -> None:
 def test_values_that_are_no_grid(bad: dict) -> None:
     with pytest.raises(ValueError, match="="):
         PolarGrid(**bad)
+
+
+@pytest.mark.parametrize(("start", "stop"), [(152.3, 512.3), (152.2, 512.2), (-0.1, 359.9)])
+def test_a_ring_is_one_wherever_it_starts(start: float, stop: float) -> None:
+    """The difference of two decimal angles is seldom exactly 360."""
+    grid = PolarGrid(start=start, stop=stop)
+    assert grid.is_full_ring
+    np.testing.assert_allclose(grid.area, np.pi * (25**2 - 10**2), rtol=1e-14)
+
+
+def test_integrals_of_thin_rows_keep_their_digits() -> None:
+    """∫ r³ dr of a row 1e-7 mm thick at 1000 mm: exact within rounding, not within 1e-6."""
+    grid = PolarGrid(inner_radius=999.9, outer_radius=1000.0, radial=1024)
+    a, b = (grid.edges[k : k + grid.radial].astype(np.longdouble) for k in (0, 1))
+    squares = (np.longdouble(1000.0) ** 2 - np.longdouble(999.9) ** 2) / 1024  # 64 bits
+    np.testing.assert_allclose(grid.radial_integrals[2], squares * (a * a + b * b) / 4, rtol=1e-13)

@@ -4,12 +4,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.judge import Verdict
-from beamopt.optimize import optimize
+from beamopt.judge import Judge, Verdict
+from beamopt.optimisation import optimize
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
-from beamopt.study.run import study
+from beamopt.study.run import run_study
 from beamopt.study.table import PAPER, Outcome, comparison_markdown, table_csv, table_markdown
 from tests.validation.resume import content
 
@@ -19,7 +20,7 @@ SMALL = Plan(iterations=2, overrides=("search.generations=1", "section.feature_p
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Outcome]]:
     folder = tmp_path_factory.mktemp("study") / "out"
-    return folder, study(folder, SMALL)
+    return folder, run_study(folder, SMALL)
 
 
 def test_every_target_combination_and_iteration_is_run(made) -> None:
@@ -70,18 +71,18 @@ def test_best_and_worst_designs_have_their_losses(made) -> None:
 def test_more_iterations_go_on_and_anything_else_is_refused(made, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     one = Plan(1, SMALL.seed, SMALL.overrides)
-    study(folder, one, figures=False)
-    study(folder, SMALL, resume=True, figures=False)
+    run_study(folder, one, figures=False)
+    run_study(folder, SMALL, resume=True, figures=False)
     drawn = {name for name in content(made[0]) if name.endswith((".svg", ".png"))}
     whole = {name: held for name, held in content(made[0]).items() if name not in drawn}
     assert len(drawn) == 8
     assert content(folder) == whole
     with pytest.raises(InputError, match="more iterations, not fewer"):
-        study(folder, one, resume=True)
+        run_study(folder, one, resume=True)
     with pytest.raises(InputError, match="seed = 0"):
-        study(folder, Plan(2, 1, SMALL.overrides), resume=True)
+        run_study(folder, Plan(2, 1, SMALL.overrides), resume=True)
     with pytest.raises(InputError, match="--resume goes on"):
-        study(folder, SMALL)
+        run_study(folder, SMALL)
 
 
 def outcomes_with(losses: list[float]) -> list[Outcome]:
@@ -153,3 +154,40 @@ def test_csv_summaries_follow_L() -> None:
     assert named[(*key, "Best")][:2] == ["60.98", "121.96"]
     assert float(named[(*key, "Mean")][0]) == pytest.approx(89.835)
     assert named[(*key, "Worst")][0] == "134.04"
+
+
+def test_foreign_folders_and_decided_keys_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("precious")
+    with pytest.raises(InputError, match=r"no study\.json"):
+        run_study(tmp_path, SMALL, resume=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    with pytest.raises(InputError, match=r"a study decides search\.seed"):
+        Plan(overrides=("search.seed=5",))
+
+
+def test_an_interrupt_ends_the_study_not_one_search(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    judged = []
+
+    def interrupted(judge: Judge, candidates: object, *rest: object) -> list[Verdict]:
+        judged.append(1)
+        if len(judged) == 3:
+            raise KeyboardInterrupt
+        return judge(candidates)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("beamopt.evolve.run.judge_all", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(tmp_path / "study", SMALL, figures=False)
+    assert len(judged) == 3
+    monkeypatch.undo()
+    run_study(tmp_path / "study", SMALL, resume=True, figures=False)
+    assert (tmp_path / "study" / "table.csv").exists()
+
+
+def test_processes_change_nothing(made, tmp_path: Path) -> None:
+    """Through the command line, with two processes; a few seconds to start them."""
+    settings = [f"--set={override}" for override in SMALL.overrides]
+    out = str(tmp_path / "study")
+    assert run(["study", "--out", out, "--iterations", "2", "--workers", "2", *settings]) == 0
+    assert content(tmp_path / "study") == content(made[0])

@@ -67,18 +67,13 @@ def run_suite(name: str) -> bool:
                 write_atomic(partial, json.dumps({"code": digest, "done": done}))
             bar.advance(task)
     rows = [row for check in checks for row in done[check.name]]
-    quoted = [[_quoted(cell) for cell in row] for row in rows]
-    write_atomic(REPORTS / f"{name}.csv", csv_text(HEADER, quoted))
+    write_atomic(REPORTS / f"{name}.csv", csv_text(HEADER, rows))
     partial.unlink()
     failing = [row for row in rows if row[-1] != "holds"]
     console.print(f"{name}: {len(rows) - len(failing)} of {len(rows)} hold")
     for row in failing:
         console.print(f"  FAILS: {row[0]}: expected {row[2]}, measured {row[3]}", markup=False)
     return not failing
-
-
-def _quoted(cell: object) -> object:
-    return f'"{cell}"' if isinstance(cell, str) and "," in cell else cell
 
 
 def main() -> int:

@@ -46,8 +46,10 @@ def optimize(
 
     """
     target = scene.load_target()
-    folder = None if out is None else RunFolder.open(Path(out), scene, target, resume=resume)
+    folder = None if out is None else RunFolder.open(Path(out), resume=resume)
     with nullcontext() if folder is None else Journal(folder.journal) as journal:
+        if folder is not None:
+            folder.begin(scene, target)
         ended = run(
             scene,
             scene.judge(target),
