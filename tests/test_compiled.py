@@ -27,7 +27,7 @@ def outer(x: float) -> float:
 def result(folder: Path) -> float:
     done = subprocess.run(
         [sys.executable, "-c", "from beamopt.section.outer import outer; print(outer(1.0))"],
-        env={"PYTHONPATH": str(folder), "PATH": ""},
+        cwd=folder,  # comes first on the path
         capture_output=True,
         text=True,
         check=True,
