@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamopt.design import load_design
-from beamopt.rod.arc import arc_tips
+from beamopt.rod.arc import arc_tips, arc_tips_by_response
 from beamopt.rod.response import linear_response
 from beamopt.scene import Scene, load_scene
 from beamopt.section.moments import Moments
@@ -72,4 +72,27 @@ def checks(full: bool) -> list[Check]:
                 1e-9,
             )
 
-    return [Check("random sections", random_sections), Check("drawn section", drawn_section)]
+    def derivatives() -> Iterator[Row]:
+        """Central differences, fourth order: rounding over the step leaves about 1e-9."""
+        rng = np.random.default_rng([99])
+        worst = 0.0
+        for _ in range(200 if full else 20):
+            matrix = rng.normal(size=(3, 3)) * 10.0 ** rng.uniform(-6, -3, (3, 1))
+            pressures = rng.uniform(0, 100, (1, 3))
+            exact = arc_tips_by_response(pressures @ matrix.T, pressures, LENGTH)[0]
+            for i, j in np.ndindex(3, 3):
+                step = np.zeros((3, 3))
+                step[i, j] = 1e-5 if i == 0 else 1e-7
+                near = [arc_tips(pressures @ (matrix + k * step).T, LENGTH) for k in (-2, -1, 1, 2)]
+                slope = (near[0] - 8 * near[1] + 8 * near[2] - near[3])[0] / (12 * step[i, j])
+                worst = max(
+                    worst, float(np.abs(slope - exact[:, i, j]).max() / np.abs(exact).max())
+                )
+        what = "derivatives of the tip by the response matrix, relative"
+        yield Row(what, "central differences", 0.0, worst, 1e-7)
+
+    return [
+        Check("random sections", random_sections),
+        Check("drawn section", drawn_section),
+        Check("derivatives", derivatives),
+    ]

@@ -13,7 +13,7 @@ class Row:
     """One line of a validation table.
 
     check : what is looked at. source : where the expectation comes from.
-    measured is fine when |measured − expected| ≤ tolerance; `at_least`: measured ≥ expected.
+    It holds when |measured − expected| ≤ tolerance.
     """
 
     check: str
@@ -21,12 +21,9 @@ class Row:
     expected: float
     measured: float
     tolerance: float
-    at_least: bool = False
 
     @property
     def holds(self) -> bool:
-        if self.at_least:
-            return self.measured >= self.expected - self.tolerance
         return abs(self.measured - self.expected) <= self.tolerance
 
     @property
