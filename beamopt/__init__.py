@@ -88,6 +88,10 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the command line starts without numerics."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("beamopt")
     for home, names in _HOMES.items():
         if name in names:
             value = getattr(import_module(home), name)

@@ -219,8 +219,17 @@ class Design(Model):
         return workspace_of(self.response, self.actuator.length, self.pressures)
 
     def tips(self, pressures: FloatArray) -> FloatArray:
-        """Tips (n, 3) [mm] at pressures (n, 3) [kPa]."""
-        return arc_tips(self.response.strains(np.asarray(pressures)), self.actuator.length)
+        """Tips (n, 3) [mm] at pressures (n, 3) [kPa].
+
+        Raises
+        ------
+        ValueError : pressures of another shape, or not finite.
+
+        """
+        at = np.asarray(pressures, dtype=np.float64)
+        if at.ndim != 2 or at.shape[1] != 3 or not np.isfinite(at).all():
+            raise ValueError(f"pressures: finite and (n, 3), not {at.shape}")
+        return arc_tips(self.response.strains(at), self.actuator.length)
 
     def json(self) -> str:  # type: ignore[override]  # pydantic's own `json` is deprecated
         """The design file's text."""

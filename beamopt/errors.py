@@ -22,7 +22,10 @@ class InputError(ValueError):
         super().__init__(where, key, value, allowed)
 
     def __str__(self) -> str:
-        shown = repr(self.value) if isinstance(self.value, str) else str(self.value)
+        try:
+            shown = repr(self.value) if isinstance(self.value, str) else str(self.value)
+        except (RecursionError, ValueError):  # brackets too deep, numbers too long
+            shown = "(too long to show)"
         if len(shown) > 60:
             shown = shown[:57] + "..."
         said = self.key

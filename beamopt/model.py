@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -61,6 +62,19 @@ def _bound(field: FieldInfo, name: str) -> float | None:
 
 M = TypeVar("M", bound=BaseModel)
 
+PLAIN = {
+    "model_type": "must be a table of keys",
+    "dict_type": "must be a table of keys",
+    "tuple_type": "must be a list",
+    "list_type": "must be a list",
+    "too_long": "has too many items",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "finite_number": "must be a finite number",
+    "string_type": "must be text",
+}
+"""What the checks' own wording means to a person."""
+
 
 def parse(model: type[M], data: Mapping[str, Any], where: object) -> M:
     """Build `model` from a file's content.
@@ -89,9 +103,11 @@ def _explained(error: ValidationError, model: type[BaseModel], where: object) ->
         whole = isinstance(value, Mapping | list | tuple)
         said = str(first["ctx"]["error"])
         return InputError(where, path, None if whole else value, said)
-    said = said[0].lower() + said[1:]
-    limits = allowed(field) if field is not None and path[-1] != "]" else ""
-    if limits and kind in ("greater_than_equal", "less_than_equal", "literal_error"):
+    said = PLAIN.get(kind, said[0].lower() + said[1:])
+    limits = allowed(field) if field is not None else ""
+    in_a_list = path.endswith("]")
+    ranged = kind in ("greater_than_equal", "less_than_equal") and not in_a_list
+    if limits and (ranged or kind == "literal_error"):
         said = f"allowed: {limits}"
     elif limits:
         said = f"{said}; {limits}"
@@ -159,6 +175,15 @@ def read_text(path: Path) -> str:
         raise InputError(repr(str(path)), "", None, str(error)) from None
 
 
+def _without_doubles(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        keys = [key for key, _ in pairs]
+        double = next(key for key in keys if keys.count(key) > 1)
+        raise InputError(path, double, None, "stands there twice")
+    return data
+
+
 def read_json(path: Path) -> dict[str, Any]:
     """The object in a JSON file.
 
@@ -169,10 +194,12 @@ def read_json(path: Path) -> dict[str, Any]:
     """
     text = read_text(path)
     try:
-        data = json.loads(text)
+        data = json.loads(text, object_pairs_hook=partial(_without_doubles, path))
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise InputError(path, place, error.msg, "a whole JSON file (is it cut off?)") from None
+    except InputError:
+        raise
     except (ValueError, RecursionError) as error:  # numbers too long, brackets too deep
         raise InputError(path, "", None, f"no JSON that can be read: {error}") from None
     if not isinstance(data, dict):

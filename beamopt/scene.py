@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -24,7 +24,8 @@ from beamopt.workspace import workspace_of
 __all__ = ["Scene", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
-Vector = tuple[Number, Number, Number]
+Component = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
+Vector = tuple[Component, Component, Component]
 
 
 class SectionRules(Model):
@@ -214,26 +215,36 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
         raise InputError(path, "", None, f"no TOML file: {error}") from None
     if data.get("schema", SCHEMA) != SCHEMA:
         raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
-    for override in overrides:
-        _override(data, override)
-    read = parse(Scene, data, path)
+    if overrides:
+        data = _overridden(data, [overrides] if isinstance(overrides, str) else overrides)
+    try:
+        read = parse(Scene, data, path)
+    except InputError as error:
+        if not overrides:
+            raise
+        parse(Scene, tomllib.loads(text), path)  # what is wrong with the file itself comes first
+        raise InputError("--set", error.key, error.value, error.allowed) from None
     if read.target.file is None:
         return read
     file = str(path.parent.resolve() / read.target.file)
     return read.model_copy(update={"target": read.target.model_copy(update={"file": file})})
 
 
-def _override(data: dict[str, Any], override: str) -> None:
-    key, separator, text = override.partition("=")
-    if not separator or not key.strip():
-        raise InputError("--set", "", override, "written as section.key=value")
-    try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        value = text.strip()
-    *sections, last = key.strip().split(".")
-    for name in sections:
-        data = data.setdefault(name, {})
-        if not isinstance(data, dict):
-            raise InputError("--set", key, text, f"{name} is no section")
-    data[last] = value
+def _overridden(data: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
+    """A scene's data with `section.key=value` texts put in."""
+    for override in overrides:
+        key, separator, text = override.partition("=")
+        if not separator or not key.strip() or "\n" in override:
+            raise InputError("--set", "", override, "written as section.key=value")
+        try:
+            value = tomllib.loads(f"value = {text}")["value"]
+        except (ValueError, RecursionError):
+            value = text.strip()
+        *sections, last = key.strip().split(".")
+        table = data
+        for name in sections:
+            table = table.setdefault(name, {})
+            if not isinstance(table, dict):
+                raise InputError("--set", key, text, f"{name} is no section")
+        table[last] = value
+    return data

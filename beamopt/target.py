@@ -19,6 +19,7 @@ __all__ = ["BaseFrame", "Target", "oddities", "read_target", "tips_csv"]
 
 COLUMNS = ("p1", "p2", "p3", "x", "y", "z")
 SAME_PRESSURE = 1e-6  # kPa
+FARTHEST = 1e6  # mm, kPa; beyond any actuator
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +106,8 @@ def read_target(
             path,
             f"{len(found)} of {NODES} pressure combinations",
             None,
-            f"{_combination(absent)} has none; every combination of {_listed(levels)} needs a row",
+            f"{_combination(absent)} has none; every combination of {_listed(levels)} kPa needs a "
+            f"row, and the table's pressures are {_found_levels(rows)} (are they kPa?)",
         )
     tips = (base or BaseFrame()).to_local(tips)
     _check_scale(path, tips, length)
@@ -130,11 +132,15 @@ def _rows(path: Path) -> list[tuple[int, list[float]]]:
                 path, "header", ",".join(header), f"must name {','.join(COLUMNS)} once each"
             )
     places = [header.index(name) for name in COLUMNS]
-    return [(number, _numbers(path, number, line, places)) for number, line in lines[1:]]
+    return [
+        (number, _numbers(path, number, line, places, len(header))) for number, line in lines[1:]
+    ]
 
 
-def _numbers(path: Path, number: int, line: str, places: list[int]) -> list[float]:
+def _numbers(path: Path, number: int, line: str, places: list[int], columns: int) -> list[float]:
     cells = _cells(path, number, line)
+    if len(cells) > columns:
+        raise InputError(path, f"line {number}", line, f"has more cells than the {columns} columns")
     values = []
     for name, place in zip(COLUMNS, places, strict=True):
         text = cells[place].strip() if place < len(cells) else ""
@@ -142,7 +148,7 @@ def _numbers(path: Path, number: int, line: str, places: list[int]) -> list[floa
             value = float(text)
         except ValueError:
             value = np.nan
-        if not np.isfinite(value):
+        if not abs(value) <= FARTHEST:
             unit = "kPa" if name.startswith("p") else "mm"
             raise InputError(path, f"line {number}, {name}", text, f"a finite number of {unit}")
         values.append(value)
@@ -190,6 +196,11 @@ def oddities(
 
 def _combination(values: list[float] | FloatArray) -> str:
     return "(" + ", ".join(f"{value:g}" for value in values[:3]) + ") kPa"
+
+
+def _found_levels(rows: list[tuple[int, list[float]]]) -> str:
+    found = sorted({value for _, values in rows for value in values[:3]})
+    return ", ".join(f"{value:g}" for value in found[:6]) + (", …" if len(found) > 6 else "")
 
 
 def _listed(levels: tuple[float, float, float]) -> str:

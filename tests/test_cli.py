@@ -121,6 +121,23 @@ def test_a_byte_order_mark_is_no_matter(here: Path) -> None:
     assert run(["tips", "bom.json"]) == 0
 
 
+def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("beamopt 0.")
+    assert run([]) == 2
+    out, err = capsys.readouterr()
+    assert "optimize" in out
+    assert err == ""
+
+
+def test_tips_of_a_run(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    result = optimize(load_scene("random-section", ["search.generations=1"]), here / "run")
+    capsys.readouterr()
+    assert run(["tips", "run", "--csv"]) == 0
+    last = capsys.readouterr().out.splitlines()[-1].split(",")
+    assert [float(cell) for cell in last[3:]] == result.best.workspace.tips[-1].tolist()
+
+
 def test_scenes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["scenes"]) == 0
     said = capsys.readouterr().out
@@ -135,7 +152,18 @@ def test_init_writes_a_scene_that_runs(here: Path, capsys: pytest.CaptureFixture
     assert "exists already" in complaint(["init", "mine.toml"], capsys)
 
 
+def test_init_from_a_bundled_scene_stands_on_its_own(here: Path) -> None:
+    assert run(["init", "mine.toml", "--scene", "hand-drawn-workspace"]) == 0
+    assert load_scene(here / "mine.toml").target.file == str(here / "hand_drawn_workspace.csv")
+    assert str(here) not in (here / "mine.toml").read_text()
+
+
 MISTAKES = [
+    (["optimize", "random-section", "--set", "grid.raidal=3"], "--set: grid.raidal = 3"),
+    (["optimize", "random-section", "--set", "search.generations=3\nfoo=1"], "--set"),
+    (["optimize", "random-section", "--set", "search.seed=" + "9" * 5000], "search.seed"),
+    (["optimize", "random-section", "--set", "a=" + "[" * 5000], "--set: a"),
+    (["optimize", "random-section", "--set", "a" + ".a" * 3000 + "=1"], "--set: a"),
     (["optimize", "nowhere.toml"], "no such scene; a path, or one of: hand-drawn-section"),
     (["optimize", "random-section", "--seed", "-1"], "--seed"),
     (["optimize", "random-section", "--workers", "0"], "--workers"),

@@ -158,6 +158,19 @@ def test_other_files_are_refused_in_one_line(tmp_path: Path) -> None:
             load_design(tmp_path / name)
 
 
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "double.json"
+    path.write_text(DRAWN.read_text().replace('"radial"', '"radial": 64, "radial"', 1))
+    with pytest.raises(InputError, match="radial: stands there twice"):
+        load_design(path)
+
+
+@pytest.mark.parametrize("pressures", [[1.0, 2.0, 3.0], [[1.0, 2.0]], [[1.0, 2.0, np.nan]]])
+def test_pressures_that_are_none(pressures: list) -> None:
+    with pytest.raises(ValueError, match="pressures: finite"):
+        load_design(DRAWN).tips(pressures)
+
+
 def test_tips_at_any_pressures() -> None:
     design = load_design(DRAWN)
     space = design.workspace

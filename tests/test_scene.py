@@ -67,7 +67,7 @@ BAD = [
     ("[actuator]\nlenght = 3", "actuator.lenght = 3", "known here: length"),
     ("[actuator]\nlength = 0.1", "actuator.length = 0.1", "5 … 5000 mm"),
     ("[actuator]\nlength = nan", "actuator.length = nan", "finite"),
-    ("[actuator]\nlength = '100'", "actuator.length = '100'", "valid number"),
+    ("[actuator]\nlength = '100'", "actuator.length = '100'", "must be a number; 5 … 5000 mm"),
     ("[actuator]\nyoungs_modulus = 3e5", "300000.0", "5 … 50000 kPa"),
     ("[pressures]\nlevels = [0, 50000, 100000]", "pressures.levels[1] = 50000", "2000"),
     ("[pressures]\nlevels = [0, 50]", "pressures.levels[2]", "three ascending levels"),

@@ -65,10 +65,12 @@ BAD = [
     ("NaN", [*LINES[:-1], "100,100,100,0,nan,136"], "line 28, y = 'nan'", "finite number of mm"),
     ("text", [*LINES[:-1], "100,1oo,100,0,0,136"], "line 28, p2 = '1oo'", "finite number of kPa"),
     ("short row", [*LINES[:-1], "100,100,100,0"], "line 28, y = ''", "finite"),
+    ("too large", [*LINES[:-1], "100,100,100,0,1e300,136"], "y = '1e300'", "finite number of mm"),
+    ("more cells", [*LINES[:-1], "100,100,100,0,0,136,7"], "line 28", "more cells than the 6"),
     ("twice", [*LINES, LINES[-1]], "line 29", "stands on line 28 already"),
     ("no z", [line.rpartition(",")[0] for line in LINES], "header", "p1,p2,p3,x,y,z"),
     ("empty", [], "empty", "p1,p2,p3,x,y,z"),
-    ("in Pa", [_.replace("50", "50000") for _ in LINES], "8 of 27", "has none"),
+    ("in Pa", [_.replace("50", "50000") for _ in LINES], "8 of 27", "(are they kPa?)"),
 ]
 
 

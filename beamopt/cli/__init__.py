@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 
@@ -14,6 +15,9 @@ def main() -> None:
 
     for name in THREAD_SETTINGS:  # before numpy is loaded; small matrices gain nothing from threads
         os.environ.setdefault(name, "1")
+    for stream in (sys.stdout, sys.stderr):  # a terminal that has no "²" still gets an answer
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     from beamopt.cli.application import run
 
     sys.exit(run(sys.argv[1:]))

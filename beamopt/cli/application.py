@@ -20,6 +20,26 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+INTERRUPTED = 130  # exit code, as shells have it
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"beamopt {version('beamopt')}")
+        raise typer.Exit
+
+
+@app.callback()
+def about(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Find the cross-section of a soft pneumatic actuator for a target workspace."""
+
+
 SceneName = Annotated[str, typer.Argument(help="Scene file, or the name of a bundled scene.")]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed; replaces the scene's.")]
 Workers = Annotated[int, typer.Option(min=1, max=256, help="Sections judged at once.")]
@@ -64,7 +84,9 @@ def study(
 
 @app.command()
 def tips(
-    design: Annotated[Path, typer.Argument(help="Design file.")],
+    design: Annotated[
+        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
+    ],
     pressures: Annotated[
         list[str] | None,
         typer.Option(metavar="P1,P2,P3", help="One combination in kPa; repeat for more."),
@@ -121,17 +143,21 @@ def run(arguments: Sequence[str]) -> int:
     except InputError as error:
         return _complain(str(error))
     except (typer.Abort, KeyboardInterrupt):
-        return _complain("interrupted", code=130)
+        return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
         return 0
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
+        file = error.filename2 or error.filename
+        place = f"{file}: " if file else ""
         return _complain(f"{place}{(error.strerror or str(error)).lower()}")
     except Exception as error:
         # what the option parser refuses; its exception has no public name that stays
         if hasattr(error, "format_message"):
-            return _complain(error.format_message())
+            said = error.format_message()
+            return _complain(said) if said else 2  # help was asked for by giving nothing
         raise
+    if code == INTERRUPTED:
+        return _complain("interrupted", code)
     return code if isinstance(code, int) else 0  # what a command gave typer.Exit
 
 

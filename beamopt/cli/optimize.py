@@ -19,8 +19,6 @@ from beamopt.scene import load_scene
 
 __all__ = ["optimize_command"]
 
-INTERRUPTED = 130  # exit code, as shells have it
-
 
 def optimize_command(
     scene_name: str,
@@ -53,7 +51,7 @@ def optimize_command(
     if result.status is StopReason.INTERRUPTED:
         asked = shlex.join([scene_name, *(f"--set={key}" for key in [*overrides, *seeded])])
         console.print(f"go on with: beamopt optimize {asked} --out {folder} --resume", markup=False)
-        raise typer.Exit(INTERRUPTED)
+        raise KeyboardInterrupt
     if result.verdict.status is not Status.JUDGED:
         raise typer.Exit(1)
 

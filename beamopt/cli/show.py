@@ -28,7 +28,7 @@ def show_command(path: Path, out: Path | None) -> None:
     """Draw a design, or the best design of a run over its target."""
     file = path / "best.json" if path.is_dir() else path
     figure_path = out or Path(f"{path.resolve().stem}.png")
-    if figure_path.suffix not in ENDINGS:
+    if figure_path.suffix.lower() not in ENDINGS:
         raise InputError("--out", "", str(figure_path), f"must end in {', '.join(ENDINGS)}")
     design = load_design(file)
     beside = file.parent / "target.csv"
@@ -48,7 +48,7 @@ def show_command(path: Path, out: Path | None) -> None:
 
 def _terminal_picture(section: CrossSection) -> Text:
     """The section in half-height blocks; with digits where the terminal has no colour."""
-    types = section_pixels(section, WIDTH)
+    types = section_pixels(section, min(WIDTH, console.width // 2 * 2))
     if console.color_system is None:
         rows = types[::2]
         return Text("\n".join("".join(SYMBOLS[kind] for kind in row).rstrip() for row in rows))

@@ -21,7 +21,7 @@ __all__ = ["tips_command"]
 
 def tips_command(path: Path, combinations: Sequence[str], as_csv: bool) -> None:
     """Print tips as a table for people or as CSV for programs."""
-    design = load_design(path)
+    design = load_design(path / "best.json" if path.is_dir() else path)
     pressures = _parsed(combinations) if combinations else design.workspace.pressures
     tips = design.tips(pressures)
     if as_csv:

@@ -105,6 +105,8 @@ class GeneticAlgorithm:
         ValueError : not as many verdicts as candidates.
 
         """
+        if len(verdicts) != len(self._pending):
+            raise ValueError(f"{len(verdicts)} verdicts for {len(self._pending)} candidates")
         judged = [Individual(p, v) for p, v in zip(self._pending, verdicts, strict=True)]
         self.evaluations += len(judged)
         for individual in judged:

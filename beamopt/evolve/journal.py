@@ -23,7 +23,9 @@ from beamopt.section.feature_points import FeaturePoints
 
 __all__ = ["Journal"]
 
-SCHEMA = "beamopt-journal/1"
+HEADER = b'{"schema":"beamopt-journal/1"}\n'
+
+FAILURES = {status.name for status in Status if status is not Status.JUDGED}
 
 LOCK_PATIENCE = 2.0  # s; a process that was just killed may still be letting go
 
@@ -58,9 +60,9 @@ class Journal:
             self._lock()
             self._lines = self._whole_lines()
             if not self._lines:
-                self._append({"schema": SCHEMA})
-            elif _decoded(self._lines[0]) != {"schema": SCHEMA}:
-                expected = f'must be {{"schema": "{SCHEMA}"}}'
+                self._append(HEADER)
+            elif self._lines[0] != HEADER.decode().rstrip():
+                expected = f"must be {HEADER.decode().rstrip()}"
                 raise InputError(path, "line 1", self._lines[0], expected)
         except BaseException:
             self.close()
@@ -104,6 +106,8 @@ class Journal:
         """The lines of the file as it stands, after cutting off a last one that has no end."""
         content = self._path.read_bytes()
         whole = content[: content.rfind(b"\n") + 1]
+        if not whole and not HEADER.startswith(content):
+            raise InputError(self._path, "line 1", None, "is no journal")
         if len(whole) < len(content):
             os.truncate(self._path, len(whole))
         return whole.decode("utf-8", errors="replace").splitlines()
@@ -124,34 +128,34 @@ class Journal:
 
     def write(self, search: GeneticAlgorithm, verdicts: Sequence[Verdict]) -> None:
         """Append the verdicts on what `search` asks for; call it before telling them."""
-        self._append(
-            {
-                "generation": search.generation,
-                "stage": search.stage.value,
-                "judged": [
-                    _entry(points, verdict)
-                    for points, verdict in zip(search.ask(), verdicts, strict=True)
-                ],
-            }
-        )
+        judged = zip(search.ask(), verdicts, strict=True)
+        record: dict[str, object] = {
+            "generation": search.generation,
+            "stage": search.stage.value,
+            "judged": [_entry(points, verdict) for points, verdict in judged],
+        }
+        self._append(_line(record))
 
-    def _append(self, record: dict[str, object]) -> None:
-        line = json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n"
-        self._stream.write(line.encode())
+    def _append(self, line: bytes) -> None:
+        self._stream.write(line)
         self._stream.flush()
 
 
+def _line(record: dict[str, object]) -> bytes:
+    return (json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n").encode()
+
+
 def _entry(points: FeaturePoints, verdict: Verdict) -> list[object]:
-    """Digest, L and K (null when infinite), and the status where it is not `JUDGED`."""
-    losses = [value if math.isfinite(value) else None for value in (verdict.L, verdict.K)]
-    said = [] if verdict.status is Status.JUDGED else [verdict.status.name]
-    return [points.digest, *losses, *said]
+    """Digest, L and K; for what could not be judged null, null and the status."""
+    if verdict.status is not Status.JUDGED:
+        return [points.digest, None, None, verdict.status.name]
+    return [points.digest, verdict.L, verdict.K]
 
 
 def _decoded(line: str) -> object:
     try:
         return json.loads(line)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):
         return None
 
 
@@ -165,18 +169,16 @@ def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):
         return None
-    verdicts = []
-    for points, entry in zip(asked, judged, strict=True):
-        try:
-            digest, L, K, *status = entry
-            verdict = Verdict(
-                math.inf if L is None else float(L),
-                math.inf if K is None else float(K),
-                Status[status[0]] if status else Status.JUDGED,
-            )
-        except (TypeError, ValueError, KeyError):
-            return None
-        if digest != points.digest:
-            return None
-        verdicts.append(verdict)
-    return verdicts
+    verdicts = [_verdict(entry, points) for points, entry in zip(asked, judged, strict=True)]
+    known = [verdict for verdict in verdicts if verdict is not None]
+    return known if len(known) == len(verdicts) else None
+
+
+def _verdict(entry: object, points: FeaturePoints) -> Verdict | None:
+    """A verdict as `_entry` writes it; None for anything else."""
+    match entry:
+        case [digest, float(L), float(K)] if digest == points.digest:
+            return Verdict(L, K) if 0 <= L < math.inf and 0 <= K < math.inf else None
+        case [digest, None, None, str(name)] if digest == points.digest and name in FAILURES:
+            return Verdict(math.inf, math.inf, Status[name])
+    return None

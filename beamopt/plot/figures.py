@@ -9,8 +9,15 @@ import numpy as np
 
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
-from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
-from beamopt.plot.workspace import draw_diagonal, draw_from_above
+from beamopt.plot.style import (
+    ASIDE_COLOUR,
+    BELOW,
+    SERIES_COLOURS,
+    count_generations,
+    new_figure,
+    styled,
+)
+from beamopt.plot.workspace import draw_diagonal, draw_from_above, pressure_handles
 from beamopt.rod.arc import arc_centreline
 from beamopt.section.grid import FloatArray
 from beamopt.workspace import Workspace
@@ -33,7 +40,7 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
 
     Backbones are coloured by pressure: supply 1 red, 2 green, 3 blue.
     """
-    figure = new_figure(13.0, 5.0)
+    figure = new_figure(13.0, 5.6, below=0.1)
     left, middle = figure.add_subplot(131), figure.add_subplot(132)
     right = figure.add_subplot(133, projection="3d")
     draw_section(left, design.section, "section")
@@ -41,7 +48,7 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
     lines = arc_centreline(strains, np.linspace(0, design.actuator.length, 41))
     draw_from_above(middle, design.workspace, target, lines)
     draw_diagonal(right, design.workspace, target, lines)
-    middle.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
+    middle.legend(handles=[*middle.get_legend_handles_labels()[0], *pressure_handles()], **BELOW)
     if title:
         figure.suptitle(title)
     return figure
@@ -57,7 +64,10 @@ def convergence_figure(
     axes.plot(mean, color=ASIDE_COLOUR, lw=1.0, label="mean of the population")
     axes.plot(lowest, color=SERIES_COLOURS[0], lw=1.6, label="lowest of the population")
     axes.plot(ever, color=SERIES_COLOURS[1], lw=1.2, ls="--", label="lowest so far")
-    axes.set(yscale="log", xlabel="generation", ylabel="loss L [mm²]", title=title)
+    axes.set(xlabel="generation", ylabel="loss L [mm²]", title=title)
+    if min(ever) > 0:
+        axes.set_yscale("log")
+    count_generations(axes)
     axes.grid(True, which="both")
     axes.legend()
     return figure

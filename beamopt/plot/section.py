@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.plot.style import OUTLINE_COLOUR, SUPPLY_COLOURS, TYPE_COLOURS
+from beamopt.plot.style import BELOW, OUTLINE_COLOUR, SUPPLY_COLOURS, TYPE_COLOURS
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import SUPPLIES
+from beamopt.section.grid import PolarGrid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,9 +53,17 @@ def draw_section(axes: Axes, section: CrossSection, title: str = "") -> None:
         Patch(fc=colour, label=f"supply {supply}: {area:.0f} mm²")
         for supply, colour, area in zip(SUPPLIES, SUPPLY_COLOURS, areas, strict=True)
     ]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
+    axes.legend(handles=handles, **BELOW)
     axes.set(aspect="equal", title=title, xlabel="x [mm]", ylabel="y [mm]")
-    axes.set(xlim=(-1.05 * outer, 1.05 * outer), ylim=(-1.05 * outer, 1.05 * outer))
+    axes.set(xlim=_around(grid, 0), ylim=_around(grid, 1))
+
+
+def _around(grid: PolarGrid, axis: int) -> tuple[float, float]:
+    """Limits that leave a little room around the ring or sector."""
+    directions = np.stack([np.cos(grid.angles), np.sin(grid.angles)])[axis]
+    reach = np.outer([grid.inner_radius, grid.outer_radius], directions)
+    room = 0.05 * grid.outer_radius
+    return float(reach.min() - room), float(reach.max() + room)
 
 
 def _number_chambers(axes: Axes, section: CrossSection) -> None:
@@ -68,10 +77,10 @@ def _number_chambers(axes: Axes, section: CrossSection) -> None:
         pieces, count = label(coarse == supply)
         for piece in range(1, count + 1):
             depth = distance_transform_edt(np.pad(pieces == piece, 1))[1:-1, 1:-1]
-            if depth.max() * scale < 1.2:
+            if depth.max() * scale < 0.6:
                 continue
             row, column = np.unravel_index(int(depth.argmax()), depth.shape)
             x = (column + 0.5) * scale - section.grid.outer_radius
             y = section.grid.outer_radius - (row + 0.5) * scale
-            text = axes.text(x, y, str(supply), ha="center", va="center", size=8, zorder=4)
+            text = axes.text(x, y, str(supply), ha="center", va="center", size=7.5, zorder=4)
             text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
-from beamopt.plot.style import SERIES_COLOURS, new_figure, styled
+from beamopt.plot.style import BELOW, SERIES_COLOURS, count_generations, new_figure, styled
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
 from beamopt.section.grid import FloatArray
 from beamopt.target import Target
@@ -35,10 +35,13 @@ def losses_figure(
         for (name, spread), colour, dash in zip(lines.items(), SERIES_COLOURS, dashes, strict=True):
             low, mean, high = spread
             axes.fill_between(np.arange(len(mean)), low, high, color=colour, alpha=0.13, lw=0)
-            axes.plot(mean, color=colour, ls=dash, lw=1.5, label=f"{name} {mean[-1]:.4g}")
-        axes.set(yscale="log", xlabel="generation", title=titles.get(target, target))
+            axes.plot(mean, color=colour, ls=dash, lw=1.5, label=f"{name} {mean[-1]:,.1f}")
+        axes.set(xlabel="generation", title=titles.get(target, target))
+        if min(spread.min() for spread in lines.values()) > 0:
+            axes.set_yscale("log")
+        count_generations(axes)
         axes.grid(True)
-        axes.legend(title="mean, at the end", loc="upper right")
+        axes.legend(title="mean, at the end [mm²]", loc="upper right", frameon=True, framealpha=0.8)
     panels[0].set_ylabel("lowest L of the population [mm²]")
     return figure
 
@@ -51,13 +54,14 @@ def case_figure(target: Target, designs: Sequence[tuple[str, Design]]) -> Figure
     wanted = target.workspace
     if target.section is not None:
         draw_section(figure.add_subplot(*shape, 1), target.section, "target's section")
-    draw_from_above(figure.add_subplot(*shape, 1 + shape[1]), None, wanted)
+    first = figure.add_subplot(*shape, 1 + shape[1])
+    draw_from_above(first, None, wanted)
     draw_diagonal(figure.add_subplot(*shape, 1 + 2 * shape[1], projection="3d"), None, wanted)
     for k, (title, design) in enumerate(designs, 2):
         draw_section(figure.add_subplot(*shape, k), design.section, title)
-        above = figure.add_subplot(*shape, k + shape[1])
+        above = figure.add_subplot(*shape, k + shape[1], sharex=first, sharey=first)
         draw_from_above(above, design.workspace, wanted)
-        above.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
+        above.legend(**BELOW)
         diagonal = figure.add_subplot(*shape, k + 2 * shape[1], projection="3d")
         draw_diagonal(diagonal, design.workspace, wanted)
     return figure

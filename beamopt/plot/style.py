@@ -15,16 +15,19 @@ from beamopt.files import write_atomic
 from beamopt.section.grid import FloatArray
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = [
     "ASIDE_COLOUR",
+    "BELOW",
     "DESIGN_COLOUR",
     "OUTLINE_COLOUR",
     "SERIES_COLOURS",
     "SUPPLY_COLOURS",
     "TARGET_COLOUR",
     "TYPE_COLOURS",
+    "count_generations",
     "new_figure",
     "pressure_colours",
     "save_figure",
@@ -33,8 +36,8 @@ __all__ = [
 
 P = ParamSpec("P")
 
-MATERIAL_COLOUR = "#b8b8b8"
-SUPPLY_COLOURS = ("#c8323c", "#f2c32e", "#2a5fb0")
+MATERIAL_COLOUR = "#a9a9a9"
+SUPPLY_COLOURS = ("#cf3f35", "#ffd84d", "#173a86")
 TYPE_COLOURS = (MATERIAL_COLOUR, *SUPPLY_COLOURS)
 """Material grey, supplies red, yellow, blue: apart in lightness too, and numbered where drawn."""
 
@@ -44,6 +47,9 @@ ASIDE_COLOUR = "#8c8c8c"  # for lines that are not the point of a figure
 TARGET_COLOUR = "#e0218a"
 SERIES_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#8a5aa8")
 """For lines that stand for methods (after Okabe and Ito)."""
+
+BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
+"""Where a legend stands that would cover what is drawn."""
 
 _RC: Any = {
     "svg.hashsalt": "beamopt",
@@ -76,11 +82,20 @@ def _our_settings() -> AbstractContextManager[None]:
     return style.context(["default", _RC])
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of `width` × `height` inches."""
+def new_figure(width: float, height: float, below: float = 0.0) -> Figure:
+    """An empty figure of `width` × `height` inches, a share `below` of it left for legends."""
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    return Figure(figsize=(width, height), layout="constrained")
+    layout = ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below))
+    return Figure(figsize=(width, height), layout=layout)
+
+
+def count_generations(axes: Axes) -> None:
+    """Mark whole generations only along the x axis."""
+    from matplotlib.ticker import MaxNLocator
+
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
 
 
 def save_figure(figure: Figure, *paths: Path) -> None:
@@ -91,8 +106,9 @@ def save_figure(figure: Figure, *paths: Path) -> None:
         figure.set_layout_engine("none")  # laid out now, once for all endings
         for path in paths:
             stream = io.BytesIO()
-            metadata = dateless.get(path.suffix, {})
-            figure.savefig(stream, format=path.suffix[1:], dpi=150, metadata=metadata)
+            ending = path.suffix.lower()
+            metadata = dateless.get(ending, {})
+            figure.savefig(stream, format=ending[1:], dpi=150, metadata=metadata)
             write_atomic(path, stream.getvalue())
 
 

@@ -13,7 +13,7 @@ from beamopt.workspace import Workspace
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["draw_diagonal", "draw_from_above"]
+__all__ = ["draw_diagonal", "draw_from_above", "pressure_handles"]
 
 
 def draw_from_above(
@@ -43,6 +43,17 @@ def draw_diagonal(
     axes.locator_params(nbins=4)
     axes.locator_params(axis="y", nbins=3)
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]", title="diagonal")
+
+
+def pressure_handles() -> list[Any]:
+    """Legend entries for backbones: colour is pressure, of supply 1 red, 2 green, 3 blue."""
+    from matplotlib.lines import Line2D
+
+    only = pressure_colours(np.eye(3))
+    return [
+        Line2D([], [], color=colour, lw=1.2, label=f"backbones: p{supply} alone")
+        for supply, colour in enumerate(only, 1)
+    ]
 
 
 def _draw(

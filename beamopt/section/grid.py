@@ -12,6 +12,8 @@ __all__ = ["FloatArray", "PolarGrid"]
 
 FloatArray = NDArray[np.float64]
 
+THINNEST = 1e-6  # of the outer radius; thinner rings lose their rows to rounding
+
 
 @dataclass(frozen=True)
 class PolarGrid:
@@ -37,10 +39,11 @@ class PolarGrid:
     stop: float = 360.0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.inner_radius < self.outer_radius < np.inf:
+        thinnest = THINNEST * self.outer_radius
+        if not 0 <= self.inner_radius <= self.outer_radius - thinnest < np.inf:
             raise ValueError(
                 f"inner_radius = {self.inner_radius}: must be at least 0 and below "
-                f"outer_radius = {self.outer_radius}"
+                f"outer_radius = {self.outer_radius} by a millionth of it or more"
             )
         counts = (self.radial, self.angular)
         if not all(count == int(count) and count >= 1 for count in counts):

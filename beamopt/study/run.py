@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
 from pathlib import Path
-from typing import Any
+from typing import Literal
+
+from pydantic import Field
 
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
-from beamopt.model import read_json
+from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
 from beamopt.study.plan import Plan, Run
 from beamopt.study.pool import processes
@@ -22,7 +23,14 @@ from beamopt.study.table import Outcome
 
 __all__ = ["run_study"]
 
-SCHEMA = "beamopt-study/1"
+
+class StudyFile(Model):
+    """What `study.json` says of the study in its folder."""
+
+    schema_: Literal["beamopt-study/1"] = Field("beamopt-study/1", alias="schema")
+    seed: Count = quantity(..., "seed of the first iteration", low=0)
+    overrides: list[str] = quantity(..., "keys replaced in every scene")
+    iterations: Count = quantity(..., "runs of each target and combination", low=1)
 
 
 def run_study(
@@ -100,30 +108,21 @@ def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outco
 
 def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
     """Make the folder, or check that the study in it is the one asked for."""
-    described: dict[str, Any] = {
-        "schema": SCHEMA,
-        "seed": plan.seed,
-        "overrides": list(plan.overrides),
-        "iterations": plan.iterations,
-    }
+    asked = StudyFile(seed=plan.seed, overrides=list(plan.overrides), iterations=plan.iterations)
     there = folder / "study.json"
     claim_folder(folder, there.name, resume=resume)
     if there.exists():
-        _check_same(there, described)
+        _check_same(there, asked)
     clear_leftovers(folder, {item.name for item in folder.iterdir()} | {there.name})
-    write_atomic(there, json_text(described))
+    write_atomic(there, json_text(asked.model_dump(by_alias=True)))
 
 
-def _check_same(there: Path, described: dict[str, Any]) -> None:
-    old = read_json(there)
-    for key in ("schema", "seed", "overrides"):
-        if old.get(key) != described[key]:
-            asked = json.dumps(described[key])
-            raise InputError(there, key, old.get(key), f"the study there; now asked for: {asked}")
-    if old.get("iterations", 0) > described["iterations"]:
-        raise InputError(
-            there,
-            "iterations",
-            old["iterations"],
-            "a study can be given more iterations, not fewer",
-        )
+def _check_same(there: Path, asked: StudyFile) -> None:
+    old = parse(StudyFile, read_json(there), there)
+    for key in ("seed", "overrides"):
+        before, now = getattr(old, key), getattr(asked, key)
+        if before != now:
+            raise InputError(there, key, before, f"the study there; now asked for: {now}")
+    if old.iterations > asked.iterations:
+        allowed = "a study can be given more iterations, not fewer"
+        raise InputError(there, "iterations", old.iterations, allowed)

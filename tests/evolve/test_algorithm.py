@@ -71,7 +71,7 @@ def test_failures_are_selected_last() -> None:
 
 
 def test_the_wrong_number_of_verdicts_is_refused() -> None:
-    with pytest.raises(ValueError, match="shorter"):
+    with pytest.raises(ValueError, match="1 verdicts for 20 candidates"):
         GeneticAlgorithm(Scene()).tell([Verdict(1.0, 1.0)])
 
 

@@ -72,6 +72,7 @@ def corrupt(whole: bytes, number: int, change: tuple[bytes, bytes]) -> bytes:
         (4, (b'[["', b'[["00')),
         (5, (b'"],', b'",')),
         (5, (b",", b",\xff")),
+        (3, (b",", b",-")),
     ],
 )
 def test_a_changed_line_is_named(number: int, change: tuple[bytes, bytes], whole, tmp_path) -> None:
@@ -109,3 +110,22 @@ def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
     finally:
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
+
+
+@pytest.mark.parametrize(
+    "value", ["true", "-5.0", "NaN", "Infinity", "1e999", "null", '"0.1"', "[]"]
+)
+def test_losses_that_are_none_are_refused(value: str, whole: bytes, tmp_path: Path) -> None:
+    lines = whole.decode().splitlines(keepends=True)
+    L = lines[-1].partition('"judged":[["')[2].split(",", 2)[1]
+    lines[-1] = lines[-1].replace(L, value, 1)
+    with pytest.raises(InputError, match=f"line {len(lines)}"):
+        resumed("".join(lines).encode(), tmp_path / "run")
+
+
+def test_another_file_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "journal.jsonl"
+    path.write_bytes(b"\x00\x01 something else")
+    with pytest.raises(InputError, match="is no journal"):
+        Journal(path)
+    assert path.read_bytes() == b"\x00\x01 something else"

@@ -158,9 +158,16 @@ def test_csv_summaries_follow_L() -> None:
 
 def test_foreign_folders_and_decided_keys_are_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("precious")
+    study_file = tmp_path / "other" / "study.json"
+    study_file.parent.mkdir()
+    study_file.write_text(
+        '{"schema": "beamopt-study/1", "seed": 0, "overrides": [], "iterations": "x"}'
+    )
+    with pytest.raises(InputError, match="iterations = 'x'"):
+        run_study(study_file.parent, SMALL, resume=True)
     with pytest.raises(InputError, match=r"no study\.json"):
         run_study(tmp_path, SMALL, resume=True)
-    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.txt", "other"]
     with pytest.raises(InputError, match=r"a study decides search\.seed"):
         Plan(overrides=("search.seed=5",))
 
