@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
+from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.model import Count, Model, Number, parse, quantity, read_json
@@ -18,7 +19,7 @@ from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 from beamopt.workspace import Workspace, workspace_of
 
 __all__ = ["Actuator", "Design", "Grid", "Levels", "WallElements", "load_design"]
@@ -224,7 +225,6 @@ class Design(Model):
         Raises
         ------
         ValueError : pressures of another shape, or not finite.
-
         """
         at = np.asarray(pressures, dtype=np.float64)
         if at.ndim != 2 or at.shape[1] != 3 or not np.isfinite(at).all():
@@ -247,7 +247,6 @@ def load_design(path: str | Path) -> Design:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
-
     """
     file = Path(path)
     data = read_json(file)

@@ -14,7 +14,6 @@ class InputError(ValueError):
     key : the key, row or field, as a person finds it in that file ("grid.radial").
     value : what stands there; None when it is too long to show, or nothing.
     allowed : what may stand there, and the way out where there is one.
-
     """
 
     def __init__(self, where: object, key: str, value: object, allowed: str) -> None:

@@ -19,7 +19,6 @@ def write_atomic(path: Path, content: str | bytes) -> None:
     Raises
     ------
     OSError : the folder is missing or can not be written.
-
     """
     data = content.encode() if isinstance(content, str) else content
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")

@@ -25,7 +25,6 @@ def claim_folder(path: Path, marker: str, early: Collection[str] = (), *, resume
     Raises
     ------
     InputError : it holds files and `resume` is off, or it is of another kind, or can not be made.
-
     """
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -11,10 +11,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import Response
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import phenotypes
 from beamopt.workspace import NODES, loss, pressure_grid
@@ -61,7 +62,6 @@ class Judge:
     levels : the three pressure levels [kPa].
     target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
     neighbour_weight : λ of the second objective.
-
     """
 
     grid: PolarGrid

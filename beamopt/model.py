@@ -82,7 +82,6 @@ def parse(model: type[M], data: Mapping[str, Any], where: object) -> M:
     Raises
     ------
     InputError : the first thing that is wrong, by file, key, value and what is allowed.
-
     """
     try:
         return model.model_validate(data)
@@ -162,7 +161,6 @@ def read_text(path: Path) -> str:
     Raises
     ------
     InputError : it is missing, a folder, not readable, or not text.
-
     """
     try:
         return path.read_text(encoding="utf-8-sig")
@@ -190,7 +188,6 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError : as `read_text`, or it is not one whole JSON object.
-
     """
     text = read_text(path)
     try:

@@ -43,7 +43,6 @@ def optimize(
     Raises
     ------
     InputError : the target, or the folder or journal to go on with, can not be used.
-
     """
     target = scene.load_target()
     folder = None if out is None else RunFolder.open(Path(out), resume=resume)

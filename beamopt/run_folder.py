@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
 from beamopt.files import csv_text, json_text, write_atomic
@@ -18,7 +19,6 @@ from beamopt.provenance import provenance
 from beamopt.result import Optimisation
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
-from beamopt.section.grid import FloatArray
 from beamopt.target import Target, tips_csv
 from beamopt.workspace import NODES, rms_distance
 
@@ -56,7 +56,6 @@ class RunFolder:
         Raises
         ------
         InputError : it holds something already, or something else, or can not be written.
-
         """
         claim_folder(path, "scene.toml", BEGINNING, resume=resume)
         return cls(path)
@@ -72,7 +71,6 @@ class RunFolder:
         Raises
         ------
         InputError : the run to go on with has another scene or target.
-
         """
         kept, source = self._scene_to_keep(scene)
         if (self.path / "scene.toml").exists():

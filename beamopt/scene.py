@@ -138,7 +138,6 @@ class Scene(Model):
         Raises
         ------
         InputError : its file is missing or wrong, or does not fit the scene.
-
         """
         chosen = self.target
         if chosen.kind == "workspace":
@@ -202,7 +201,6 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
-
     """
     path = bundled_scenes().get(str(scene), Path(scene))
     if not path.exists():

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import csv_text
 from beamopt.model import read_text
 from beamopt.section.cross_section import CrossSection
-from beamopt.section.grid import FloatArray
 from beamopt.workspace import NODES, Workspace, node_index, pressure_grid
 
 __all__ = ["BaseFrame", "Target", "oddities", "read_target", "tips_csv"]
@@ -44,7 +44,6 @@ class BaseFrame:
     Raises
     ------
     ValueError : a zero vector, or x and z not perpendicular.
-
     """
 
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -83,7 +82,6 @@ def read_target(
     ------
     InputError : a column, row or combination is missing, doubled, not a number, or the positions
         can not be mm.
-
     """
     rows = _rows(path)
     tips = np.full((NODES, 3), np.nan)

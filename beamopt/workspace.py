@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import Response
-from beamopt.section.grid import FloatArray
 
 __all__ = [
     "HEXAHEDRON_EDGES",
@@ -88,6 +88,10 @@ class Workspace:
 
     levels : three pressure levels [kPa], ascending.
     tips : (27, 3) tip positions [mm] in the order of `pressure_grid(levels)`.
+
+    Raises
+    ------
+    ValueError : levels that do not ascend, or tips of another shape.
     """
 
     levels: tuple[float, float, float]

@@ -14,6 +14,7 @@ MODULES = sorted((ROOT / "beamopt").rglob("*.py")) + sorted((ROOT / "femcheck").
 
 FLOORS = [
     [
+        "beamopt.arrays",
         "beamopt.errors",
         "beamopt.files",
         "beamopt.compiled",

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamopt.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import LinearResponse
-from beamopt.section.grid import FloatArray
 from beamopt.workspace import (
     HEXAHEDRON_EDGES,
     HEXAHEDRON_NODES,

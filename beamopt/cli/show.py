@@ -49,6 +49,8 @@ def show_command(path: Path, out: Path | None) -> None:
 def _terminal_picture(section: CrossSection) -> Text:
     """The section in half-height blocks; with digits where the terminal has no colour."""
     types = section_pixels(section, min(WIDTH, console.width // 2 * 2))
+    seen = np.flatnonzero((types != OUTSIDE).any(axis=1))
+    types = types[seen[0] // 2 * 2 : seen[-1] // 2 * 2 + 2]  # a sector leaves rows empty
     if console.color_system is None:
         rows = types[::2]
         return Text("\n".join("".join(SYMBOLS[kind] for kind in row).rstrip() for row in rows))

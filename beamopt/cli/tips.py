@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table
 
+from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.section.grid import FloatArray
 from beamopt.target import tips_csv
 
 __all__ = ["tips_command"]

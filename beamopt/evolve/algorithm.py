@@ -103,7 +103,6 @@ class GeneticAlgorithm:
         Raises
         ------
         ValueError : not as many verdicts as candidates.
-
         """
         if len(verdicts) != len(self._pending):
             raise ValueError(f"{len(verdicts)} verdicts for {len(self._pending)} candidates")
@@ -148,10 +147,8 @@ class GeneticAlgorithm:
 
     def _complete(self) -> Generation:
         best = min(self._population, key=lambda one: one.verdict.L)
-        assert self._best_ever is not None
-        record = Generation(
-            self.generation, self.evaluations, tuple(self._population), best, self._best_ever
-        )
+        ever = self._best_ever or best
+        record = Generation(self.generation, self.evaluations, tuple(self._population), best, ever)
         self.generation += 1
         self.stage = Stage.OFFSPRING
         self._pending = self._recombined()

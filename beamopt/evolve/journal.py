@@ -49,7 +49,6 @@ class Journal:
     Raises
     ------
     InputError : a whole line of the file is not what this search would have written there.
-
     """
 
     def __init__(self, path: Path) -> None:

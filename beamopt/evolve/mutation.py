@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beamopt.arrays import IndexArray, LabelArray
 from beamopt.section.feature_points import SUPPLIES, FeaturePoints
 from beamopt.section.neighbours import neighbour_edges
 
 __all__ = ["MUTATIONS", "direct", "mutate", "weighted"]
 
-Edges = NDArray[np.int64]
-Types = NDArray[np.uint8]
-NewType = Callable[[int, int, Types, Edges, np.random.Generator], int]
+NewType = Callable[[int, int, LabelArray, IndexArray, np.random.Generator], int]
 
 
 def mutate(
@@ -36,13 +34,15 @@ def mutate(
     return points.with_types(types)
 
 
-def direct(selected: int, other: int, types: Types, edges: Edges, rng: np.random.Generator) -> int:
+def direct(
+    selected: int, other: int, types: LabelArray, edges: IndexArray, rng: np.random.Generator
+) -> int:
     """The type of the feature point at the other end of the edge."""
     return int(types[other])
 
 
 def weighted(
-    selected: int, other: int, types: Types, edges: Edges, rng: np.random.Generator
+    selected: int, other: int, types: LabelArray, edges: IndexArray, rng: np.random.Generator
 ) -> int:
     """A type drawn by how many neighbours have it; the selected point's own is not counted."""
     around = np.concatenate([edges[edges[:, 0] == selected, 1], edges[edges[:, 1] == selected, 0]])

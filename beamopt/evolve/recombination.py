@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 
 __all__ = ["RECOMBINATIONS", "Offspring", "fixed", "ranged"]
 

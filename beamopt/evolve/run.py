@@ -53,7 +53,6 @@ def run(
     Raises
     ------
     InputError : the journal is not this search's.
-
     """
     started = asking = time.perf_counter()
     search = GeneticAlgorithm(scene)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import (
@@ -19,7 +20,6 @@ from beamopt.plot.style import (
 )
 from beamopt.plot.workspace import draw_diagonal, draw_from_above, pressure_handles
 from beamopt.rod.arc import arc_centreline
-from beamopt.section.grid import FloatArray
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:

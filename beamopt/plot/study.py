@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import BELOW, SERIES_COLOURS, count_generations, new_figure, styled
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
-from beamopt.section.grid import FloatArray
 from beamopt.target import Target
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.plot.style import DESIGN_COLOUR, TARGET_COLOUR, pressure_colours
-from beamopt.section.grid import FloatArray
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.section.grid import FloatArray
+from beamopt.arrays import FloatArray
 
-__all__ = ["arc_centreline", "arc_tip_jacobian", "arc_tips", "arc_tips_by_response"]
+__all__ = ["arc_centreline", "arc_tip_jacobian", "arc_tip_jacobian_by_response", "arc_tips"]
 
 SERIES_BELOW = 0.05
 """θ² below which d(sin θ/θ)/dθ² and its sibling are summed as series (error below 1e-16)."""
@@ -25,7 +25,6 @@ def arc_tips(strains: FloatArray, length: float) -> FloatArray:
     Returns
     -------
     (…, 3) x, y, z from the base's material centroid, along the grid's axes and the rod's [mm].
-
     """
     return arc_centreline(strains, np.array([length]))[..., 0, :]
 
@@ -64,7 +63,9 @@ def arc_tip_jacobian(strains: FloatArray, length: float) -> FloatArray:
     return result
 
 
-def arc_tips_by_response(strains: FloatArray, pressures: FloatArray, length: float) -> FloatArray:
+def arc_tip_jacobian_by_response(
+    strains: FloatArray, pressures: FloatArray, length: float
+) -> FloatArray:
     """Derivatives (…, n, 3, 3, 3) of the tips by the response matrix: [k, x, i, j] = ∂tip_x/∂B_ij.
 
     strains : (…, n, 3) at the pressures (n, 3) [kPa], strain = B P, so that ∂tip/∂B_ij is

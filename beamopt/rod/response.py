@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from beamopt.section.grid import FloatArray
+from beamopt.arrays import FloatArray
 from beamopt.section.moments import Moments
 
 __all__ = ["LinearResponse", "Response", "linear_response"]
@@ -56,7 +56,6 @@ def linear_response(moments: Moments, youngs_modulus: float) -> LinearResponse:
     Returns
     -------
     LinearResponse : with a matrix (…, 3, 3), NaN for a section without material.
-
     """
     (i11, i12), (_, i22) = np.moveaxis(moments.second_moments, (-2, -1), (0, 1))
     sx, sy = np.moveaxis(moments.chamber_first_moments, -1, 0)

@@ -8,12 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
+from beamopt.arrays import LabelArray
 from beamopt.section.drawing import Shape, rasterise
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
 from beamopt.section.pieces import Pieces, count_pieces
-from beamopt.section.raster import LabelArray, raster
+from beamopt.section.raster import raster
 from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["CrossSection"]
@@ -23,7 +24,11 @@ __all__ = ["CrossSection"]
 class CrossSection:
     """A grid and the type of each of its elements, walls included.
 
-    labels : (radial, angular) 0 material, 1…3 chamber of that supply.
+    labels : (radial, angular) 0 material, 1…3 chamber of that supply; copied.
+
+    Raises
+    ------
+    ValueError : labels of another shape or type, or `wall_elements` that can not be halved.
     """
 
     grid: PolarGrid

@@ -12,14 +12,11 @@ triangulations possible there, the same one whenever the points are the same.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, IndexArray
 from beamopt.compiled import compiled
-from beamopt.section.grid import FloatArray
 
-__all__ = ["IndexArray", "delaunay_edges"]
-
-IndexArray = NDArray[np.int64]
+__all__ = ["delaunay_edges"]
 
 LATTICE_BITS = 25
 HALF = 26

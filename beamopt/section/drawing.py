@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, LabelArray
 from beamopt.section.feature_points import SUPPLIES
-from beamopt.section.grid import FloatArray, PolarGrid
-from beamopt.section.raster import LabelArray
+from beamopt.section.grid import PolarGrid
 
 __all__ = ["Circle", "RingPiece", "Shape", "rasterise"]
 
@@ -31,8 +31,7 @@ class RingPiece:
 
     Raises
     ------
-    ValueError : radii or angles out of order, or corners that do not fit.
-
+    ValueError : another supply, radii or angles out of order, or corners that do not fit.
     """
 
     supply: int
@@ -96,7 +95,12 @@ def _cut(
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A round chamber: supply 1…3, centre and radius [mm]."""
+    """A round chamber: supply 1…3, centre and radius [mm].
+
+    Raises
+    ------
+    ValueError : another supply, a radius that is not positive, a centre that is not finite.
+    """
 
     supply: int
     center: tuple[float, float]

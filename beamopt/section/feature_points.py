@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.arrays import FloatArray
+from beamopt.section.grid import PolarGrid
 
 __all__ = ["MATERIAL", "SUPPLIES", "FeaturePoints"]
 
@@ -29,7 +30,6 @@ class FeaturePoints:
     Raises
     ------
     ValueError : lengths differ, a position is not finite, or a type is not 0…3.
-
     """
 
     x: FloatArray

@@ -8,9 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FloatArray", "PolarGrid"]
+from beamopt.arrays import FloatArray
 
-FloatArray = NDArray[np.float64]
+__all__ = ["PolarGrid"]
+
 
 THINNEST = 1e-6  # of the outer radius; thinner rings lose their rows to rounding
 
@@ -29,6 +30,9 @@ class PolarGrid:
     radial, angular : counts of elements.
     start, stop : angles of the sector's ends [degree]; a full ring when they are 360 apart.
 
+    Raises
+    ------
+    ValueError : radii or angles out of order, or counts that are no whole numbers from 1 on.
     """
 
     inner_radius: float = 10.0

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, LabelArray
 from beamopt.compiled import compiled
-from beamopt.section.grid import FloatArray, PolarGrid
-from beamopt.section.raster import LabelArray
+from beamopt.section.grid import PolarGrid
 
 __all__ = ["Moments", "moments_of", "sum_moments"]
 
@@ -22,7 +22,6 @@ class Moments:
     ----------
     raw : (…, 4, 6) integrals of {1, x, y, x², y², xy} over the area of each type (0 material,
         1…3 supply) about the grid's axis [mm², mm³, mm⁴].
-
     """
 
     raw: FloatArray

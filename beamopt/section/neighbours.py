@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, IndexArray
 from beamopt.compiled import compiled
-from beamopt.section.delaunay import IndexArray, delaunay_edges
+from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray
 
 __all__ = ["count_edges", "neighbour_edges", "neighbour_ratio"]
 

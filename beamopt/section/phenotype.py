@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, LabelArray
 from beamopt.compiled import compiled
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, sum_moments
 from beamopt.section.neighbours import count_edges, neighbour_ratio
-from beamopt.section.raster import LabelArray, Tiling, nearest_types, tiling
+from beamopt.section.raster import Tiling, nearest_types, tiling
 from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["Phenotypes", "phenotypes"]

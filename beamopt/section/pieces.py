@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.arrays import LabelArray
 from beamopt.section.feature_points import MATERIAL, SUPPLIES
 from beamopt.section.grid import PolarGrid
-from beamopt.section.raster import LabelArray
 
 __all__ = ["Pieces", "count_pieces"]
 

@@ -6,16 +6,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 
-__all__ = ["TIE", "LabelArray", "Tiling", "nearest_types", "raster", "tiling"]
+__all__ = ["TIE", "Tiling", "nearest_types", "raster", "tiling"]
 
-LabelArray = NDArray[np.uint8]
-IndexArray = NDArray[np.int64]
 
 TIE = 1e-9
 """Squared distances [mm²] closer than this are a tie, and a tie goes to the lowest index.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamopt.arrays import LabelArray
 from beamopt.compiled import compiled
-from beamopt.section.raster import LabelArray
 
 __all__ = ["add_walls", "wall_steps"]
 
@@ -16,7 +16,6 @@ def wall_steps(wall_elements: int) -> int:
     Raises
     ------
     ValueError : not an even number from 0 on.
-
     """
     if wall_elements < 0 or wall_elements % 2:
         raise ValueError(f"wall_elements = {wall_elements}: must be 0, 2, 4, …")

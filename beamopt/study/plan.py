@@ -60,7 +60,6 @@ class Plan:
     Raises
     ------
     InputError : an override of what the study itself decides.
-
     """
 
     iterations: int = 4

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.design import Design, load_design
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.plot.study import case_figure, losses_figure
@@ -38,11 +39,12 @@ def write_report(
     """Write everything beside the run folders; each file whole or not at all."""
     write_atomic(folder / "table.csv", table_csv(outcomes))
     write_atomic(folder / "table.md", _markdown(outcomes, plan))
-    write_atomic(folder / "convergence.csv", _convergence_csv(outcomes))
+    spreads = _spreads(outcomes)
+    write_atomic(folder / "convergence.csv", _convergence_csv(spreads))
     write_atomic(folder / "best_ever.csv", _best_ever_csv(outcomes))
     cases = {target: _best_and_worst(folder, outcomes, target) for target in TARGETS}
     if figures:
-        drawn = losses_figure(_spreads(outcomes), TITLES)
+        drawn = losses_figure(spreads, TITLES)
         save_figure(drawn, folder / "convergence.svg", folder / "convergence.png")
         for target, designs in cases.items():
             drawn = case_figure(load_scene(target, plan.overrides).load_target(), designs)
@@ -69,9 +71,9 @@ def _best_and_worst(
     return designs
 
 
-def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, np.ndarray]]:
+def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, FloatArray]]:
     """For each target and combination (3, generations + 1): min, mean, max over iterations."""
-    spreads: dict[str, dict[str, np.ndarray]] = {}
+    spreads: dict[str, dict[str, FloatArray]] = {}
     for target in TARGETS:
         for combination in COMBINATIONS:
             lines = [
@@ -87,10 +89,10 @@ def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, np.ndarray]]:
     return spreads
 
 
-def _convergence_csv(outcomes: Sequence[Outcome]) -> str:
+def _convergence_csv(spreads: dict[str, dict[str, FloatArray]]) -> str:
     rows = [
         (target, combination, generation, *(float(value) for value in values))
-        for target, lines in _spreads(outcomes).items()
+        for target, lines in spreads.items()
         for combination, spread in lines.items()
         for generation, values in enumerate(spread.T)
     ]

@@ -60,7 +60,6 @@ def run_study(
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
-
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)

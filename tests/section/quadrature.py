@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.arrays import FloatArray
+from beamopt.section.grid import PolarGrid
 
 
 def element_points(grid: PolarGrid, order: int = 8) -> tuple[FloatArray, FloatArray, FloatArray]:

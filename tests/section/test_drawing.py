@@ -7,8 +7,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from beamopt.arrays import FloatArray
 from beamopt.section.drawing import Circle, RingPiece, rasterise
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.section.grid import PolarGrid
 
 PIECES = [
     RingPiece(1, (13.0, 22.0), (20.0, 100.0), 1.5),

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.arrays import FloatArray
+from beamopt.section.grid import PolarGrid
 
 GRIDS = [
     PolarGrid(),

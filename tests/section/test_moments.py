@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.section.grid import FloatArray, PolarGrid
+from beamopt.arrays import FloatArray, LabelArray
+from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
-from beamopt.section.raster import LabelArray
 from tests.section.quadrature import element_points
 
 NEAR = 1e-11

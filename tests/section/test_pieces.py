@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamopt.arrays import LabelArray
 from beamopt.section.grid import PolarGrid
 from beamopt.section.pieces import Pieces, count_pieces
-from beamopt.section.raster import LabelArray
 
 RING = PolarGrid(radial=6, angular=12)
 SECTOR = PolarGrid(radial=6, angular=12, stop=120.0)

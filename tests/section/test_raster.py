@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamopt.arrays import LabelArray
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
-from beamopt.section.raster import TIE, LabelArray, raster
+from beamopt.section.raster import TIE, raster
 
 GRIDS = {
     "paper": PolarGrid(),
