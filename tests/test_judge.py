@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from beamopt.judge import Status, judge_all
 from beamopt.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.phenotype import phenotypes
 from beamopt.workspace import loss
 from tests.validation import symmetry
 
@@ -24,6 +25,13 @@ def test_losses_are_those_of_the_design(candidates: list[FeaturePoints]) -> None
         tips = SCENE.design_of(points).workspace.tips
         assert pytest.approx(loss(tips, TARGET.workspace.tips), rel=1e-12) == verdict.L
         assert pytest.approx(verdict.L + verdict.K) == verdict.T
+
+
+def test_the_second_objective_is_the_weighted_neighbour_ratio(
+    candidates: list[FeaturePoints],
+) -> None:
+    ratios = phenotypes(SCENE.grid.build(), candidates, 4).neighbour_ratio
+    assert [verdict.K for verdict in JUDGE(candidates)] == (1000.0 * ratios).tolist()
 
 
 def test_a_verdict_does_not_depend_on_the_batch(candidates: list[FeaturePoints]) -> None:

@@ -129,3 +129,19 @@ def test_another_file_is_not_overwritten(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is no journal"):
         Journal(path)
     assert path.read_bytes() == b"\x00\x01 something else"
+
+
+def test_failures_are_on_record_with_their_reason(tmp_path: Path) -> None:
+    keys = ["section.feature_points=1", "section.material_probability=0.5", "search.generations=1"]
+    scene = load_scene("hand-drawn-section", keys)
+    optimize(scene, tmp_path / "run", figures=False)
+    path = tmp_path / "run" / "journal.jsonl"
+    whole = path.read_bytes()
+    failed = b',null,null,"NO_MATERIAL"]'
+    assert failed in whole
+    optimize(scene, tmp_path / "run", resume=True, figures=False)
+    assert path.read_bytes() == whole
+    first = whole.index(failed)
+    path.write_bytes(whole[: first - 3] + b'00"' + whole[first:])  # another genotype's
+    with pytest.raises(InputError, match="line 2"):
+        optimize(scene, tmp_path / "run", resume=True, figures=False)

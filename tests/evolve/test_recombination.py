@@ -18,6 +18,12 @@ def parents(seed: int, grid: PolarGrid = RING, counts: tuple[int, int] = (40, 60
     return [FeaturePoints.random(grid, count, rng) for count in counts]
 
 
+def scattered(rng: np.random.Generator, grid: PolarGrid) -> FeaturePoints:
+    """Points off the element centroids: no two of them at the same angle."""
+    angle = np.radians(rng.uniform(grid.start, grid.start + grid.span, 100))
+    return FeaturePoints(17 * np.cos(angle), 17 * np.sin(angle), rng.integers(0, 4, 100))
+
+
 def as_set(*points: FeaturePoints) -> Counter:
     return Counter((x, y, t) for p in points for x, y, t in zip(p.x, p.y, p.type, strict=True))
 
@@ -39,13 +45,19 @@ def test_fixed_keeps_the_counts_and_swaps_the_share(seed: int, share: float) -> 
     assert sum((as_set(c) & as_set(a)).values()) == 100 - round(share * 100)
 
 
-def test_fixed_swaps_those_nearest_to_one_angle() -> None:
-    a, b = parents(5, counts=(100, 100))
-    c, _ = fixed(a, b, RING, 0.5, np.random.default_rng(1))
-    angle = np.random.default_rng(1).uniform(0, 2 * np.pi)
-    taken = [k for k in range(100) if (a.x[k], a.y[k], a.type[k]) not in as_set(c)]
-    away = np.abs(np.mod(a.angles - angle + np.pi, 2 * np.pi) - np.pi)
-    assert set(taken) == set(np.argsort(away)[:50])
+@pytest.mark.parametrize("grid", [RING, SECTOR])
+def test_fixed_swaps_those_nearest_to_one_angle(grid: PolarGrid) -> None:
+    """Nearest round the ring, also across where its angles start; not across a sector's gap."""
+    span = np.radians(grid.span)
+    for seed in range(12):
+        rng = np.random.default_rng([seed, 7])
+        a, b = (scattered(rng, grid) for _ in range(2))
+        c, _ = fixed(a, b, grid, 0.5, np.random.default_rng(seed))
+        angle = np.radians(grid.start) + np.random.default_rng(seed).uniform(0, span)
+        kept = as_set(c)
+        taken = [k for k in range(100) if (a.x[k], a.y[k], a.type[k]) not in kept]
+        away = 1 - np.cos(a.angles - angle)  # grows with the angle between, round the ring
+        assert set(taken) == set(np.argsort(away, kind="stable")[:50])
 
 
 def test_range_swaps_an_interval_of_angles() -> None:

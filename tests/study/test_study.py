@@ -40,13 +40,16 @@ def test_every_target_combination_and_iteration_is_run(made) -> None:
 def test_initial_populations_are_shared(made) -> None:
     _, outcomes = made
     for target in TARGETS:
-        for iteration in (1, 2):
-            first = {
+        first = [
+            {
                 one.lowest[0]
                 for one in outcomes
                 if (one.run.target, one.run.iteration) == (target, iteration)
             }
-            assert len(first) == 1
+            for iteration in (1, 2)
+        ]
+        assert [len(values) for values in first] == [1, 1]
+        assert first[0] != first[1]
 
 
 def test_a_run_of_the_study_is_an_ordinary_run(made) -> None:

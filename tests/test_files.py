@@ -1,0 +1,62 @@
+import csv
+import errno
+import io
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beamopt.files import csv_text, json_text, write_atomic
+
+
+def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
+    path = tmp_path / "file.txt"
+    write_atomic(path, "old")
+    inode = path.stat().st_ino
+    write_atomic(path, b"new")
+    assert path.read_bytes() == b"new"
+    assert path.stat().st_ino != inode  # another file in its place: never half of both
+    assert [item.name for item in tmp_path.iterdir()] == ["file.txt"]
+
+
+def test_a_write_that_fails_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "file.txt"
+    write_atomic(path, "old")
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "no space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="no space"):
+        write_atomic(path, "new" * 1000)
+    assert path.read_text() == "old"
+    assert [item.name for item in tmp_path.iterdir()] == ["file.txt"]
+
+
+@given(st.lists(st.floats(allow_nan=False), max_size=5))
+def test_floats_survive_tables_and_json(values: list[float]) -> None:
+    text = csv_text("a", [[value] for value in values])
+    read = [float(line) for line in text.splitlines()[1:]]
+    np.testing.assert_array_equal(read, values)
+    finite = [value for value in values if np.isfinite(value)]
+    assert json.loads(json_text({"v": finite}))["v"] == finite
+
+
+def test_cells_with_commas_are_quoted() -> None:
+    text = csv_text("a,b", [["one, two", None]])
+    assert list(csv.reader(io.StringIO(text))) == [["a", "b"], ["one, two", ""]]
+
+
+def test_json_keeps_lists_of_numbers_on_one_line() -> None:
+    value = {"x": [1.5, 2.0], "parts": [{"r": [1, 2]}, {"r": []}], "empty": {}}
+    text = json_text(value)
+    assert ' "x": [1.5, 2.0],\n' in text
+    assert json.loads(text) == value
+    with pytest.raises(ValueError, match="JSON"):
+        json_text({"x": float("nan")})
