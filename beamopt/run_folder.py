@@ -107,13 +107,15 @@ class RunFolder:
     def write_result(self, result: Optimisation, *, figures: bool = True) -> None:
         """Write designs, tables and figures; each whole or not at all.
 
-        Where no candidate could be judged there is no design to write.
+        Where no candidate, or none of the last population, could be judged, there is no design to
+        write as the best, or as the final one.
         """
         write_atomic(self.path / "history.csv", history_csv(result.history))
         if result.verdict.status is Status.JUDGED:
             write_atomic(self.path / "tips.csv", _distances_csv(result))
             result.best.save(self.path / "best.json")
-            result.final.save(self.path / "final.json")
+            if result.history[-1].best.verdict.status is Status.JUDGED:
+                result.final.save(self.path / "final.json")
             if figures:
                 self._draw(result)
         write_atomic(self.path / "summary.json", json_text(summary(result)))

@@ -15,6 +15,7 @@ from beamopt.plot.style import (
     BELOW,
     SERIES_COLOURS,
     count_generations,
+    log_losses,
     new_figure,
     styled,
 )
@@ -65,8 +66,7 @@ def convergence_figure(
     axes.plot(lowest, color=SERIES_COLOURS[0], lw=1.6, label="lowest of the population")
     axes.plot(ever, color=SERIES_COLOURS[1], lw=1.2, ls="--", label="lowest so far")
     axes.set(xlabel="generation", ylabel="loss L [mm²]", title=title)
-    if min(ever) > 0:
-        axes.set_yscale("log")
+    log_losses(axes, np.array(ever))
     count_generations(axes)
     axes.grid(True, which="both")
     axes.legend()

@@ -10,7 +10,14 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.design import Design
 from beamopt.plot.section import draw_section
-from beamopt.plot.style import BELOW, SERIES_COLOURS, count_generations, new_figure, styled
+from beamopt.plot.style import (
+    BELOW,
+    SERIES_COLOURS,
+    count_generations,
+    log_losses,
+    new_figure,
+    styled,
+)
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
 from beamopt.target import Target
 
@@ -37,8 +44,7 @@ def losses_figure(
             axes.fill_between(np.arange(len(mean)), low, high, color=colour, alpha=0.13, lw=0)
             axes.plot(mean, color=colour, ls=dash, lw=1.5, label=f"{name} {mean[-1]:,.1f}")
         axes.set(xlabel="generation", title=titles.get(target, target))
-        if min(spread.min() for spread in lines.values()) > 0:
-            axes.set_yscale("log")
+        log_losses(axes, np.stack([spread[1] for spread in lines.values()]))
         count_generations(axes)
         axes.grid(True)
         axes.legend(title="mean, at the end [mm²]", loc="upper right", frameon=True, framealpha=0.8)

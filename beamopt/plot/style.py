@@ -28,6 +28,7 @@ __all__ = [
     "TARGET_COLOUR",
     "TYPE_COLOURS",
     "count_generations",
+    "log_losses",
     "new_figure",
     "pressure_colours",
     "save_figure",
@@ -89,6 +90,13 @@ def new_figure(width: float, height: float, below: float = 0.0) -> Figure:
 
     layout = ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below))
     return Figure(figsize=(width, height), layout=layout)
+
+
+def log_losses(axes: Axes, losses: FloatArray) -> None:
+    """A logarithmic axis for losses, where there are any: those of nothing judged are infinite."""
+    finite = losses[np.isfinite(losses)]
+    if finite.size and finite.min() > 0:
+        axes.set_yscale("log")
 
 
 def count_generations(axes: Axes) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, LabelArray
 from beamopt.section.feature_points import SUPPLIES
-from beamopt.section.grid import PolarGrid
+from beamopt.section.grid import PolarGrid, angle_between
 
 __all__ = ["Circle", "RingPiece", "Shape", "rasterise"]
 
@@ -44,13 +44,14 @@ class RingPiece:
         _check_supply(self.supply)
         if not 0 <= inner < outer < np.inf:
             raise ValueError(f"r = [{inner:g}, {outer:g}]: two radii in mm, the smaller one first")
-        if not 0 < last - first <= 360:
+        between = angle_between(first, last)
+        if not 0 < between <= 360:
             raise ValueError(
                 f"phi = [{first:g}, {last:g}]: two angles in degrees, the second up to 360 above"
             )
-        half = np.radians(last - first) / 2
+        half = np.radians(between) / 2
         room = (inner + c) * np.sin(min(half, np.pi / 2))
-        if last - first == 360 or c == 0:
+        if between == 360 or c == 0:
             room = np.inf  # no corners, or sharp ones
         if not (0 <= c <= (outer - inner) / 2 and c <= room):
             most = (outer - inner) / 2
@@ -63,9 +64,10 @@ class RingPiece:
         (inner, outer), (first, last), c = self.r, self.phi, self.corner
         radius = np.hypot(x, y)
         inside = (radius >= inner - ON_THE_EDGE) & (radius <= outer + ON_THE_EDGE)
-        if last - first == 360:
+        between = angle_between(first, last)
+        if between == 360:
             return np.asarray(inside)
-        span = np.radians(last - first)
+        span = np.radians(between)
         turned = np.arctan2(y, x) - np.radians(first) + ON_THE_EDGE
         after = np.mod(turned, 2 * np.pi) - ON_THE_EDGE
         inside &= after <= span + ON_THE_EDGE

@@ -10,10 +10,15 @@ from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
 
-__all__ = ["PolarGrid"]
-
+__all__ = ["PolarGrid", "angle_between"]
 
 THINNEST = 1e-6  # of the outer radius; thinner rings lose their rows to rounding
+
+
+def angle_between(start: float, stop: float) -> float:
+    """`stop` − `start` [degree]; exactly 360 where only the rounding of decimals is missing."""
+    between = stop - start
+    return 360.0 if abs(between - 360.0) < 1e-9 else between
 
 
 @dataclass(frozen=True)
@@ -58,8 +63,7 @@ class PolarGrid:
     @property
     def span(self) -> float:
         """Angle from start to stop [degree]; 360 exactly where only rounding is missing."""
-        between = self.stop - self.start
-        return 360.0 if abs(between - 360.0) < 1e-9 else between
+        return angle_between(self.start, self.stop)
 
     @property
     def is_full_ring(self) -> bool:

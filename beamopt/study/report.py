@@ -11,6 +11,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.design import Design, load_design
 from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.judge import Status
 from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
@@ -24,7 +25,19 @@ from beamopt.study.table import (
     table_markdown,
 )
 
-__all__ = ["write_report"]
+__all__ = ["NAMES", "write_report"]
+
+NAMES = (
+    "table.csv",
+    "table.md",
+    "convergence.csv",
+    "best_ever.csv",
+    *(f"{figure}.{ending}" for figure in ("convergence", *TARGETS) for ending in ("svg", "png")),
+    *(f"{target}-{which}.json" for target in TARGETS for which in ("best", "worst")),
+    "timing.csv",
+    "provenance.json",
+)
+"""Every file that `write_report` writes."""
 
 
 def write_report(
@@ -58,12 +71,16 @@ def write_report(
 def _best_and_worst(
     folder: Path, outcomes: Sequence[Outcome], target: str
 ) -> list[tuple[str, Design]]:
-    """Keep the designs of a target's best and worst search; returns them with their titles."""
+    """Keep the designs of a target's best and worst search; returns them with their titles.
+
+    A search whose last population could not be judged has none.
+    """
     ordered = sorted(
-        (one for one in outcomes if one.run.target == target), key=lambda one: one.final.L
+        (one for one in outcomes if one.run.target == target and one.final.status is Status.JUDGED),
+        key=lambda one: one.final.L,
     )
     designs = []
-    for name, one in (("best", ordered[0]), ("worst", ordered[-1])):
+    for name, one in (("best", ordered[0]), ("worst", ordered[-1])) if ordered else ():
         design = load_design(folder / "runs" / one.run.name / "final.json")
         design.save(folder / f"{target}-{name}.json")
         said = f"{name}: {one.run.combination}, iteration {one.run.iteration}"

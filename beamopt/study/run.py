@@ -18,7 +18,7 @@ from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
 from beamopt.study.plan import Plan, Run
 from beamopt.study.pool import processes
-from beamopt.study.report import write_report
+from beamopt.study.report import NAMES, write_report
 from beamopt.study.table import Outcome
 
 __all__ = ["run_study"]
@@ -112,7 +112,7 @@ def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
     claim_folder(folder, there.name, resume=resume)
     if there.exists():
         _check_same(there, asked)
-    clear_leftovers(folder, {item.name for item in folder.iterdir()} | {there.name})
+    clear_leftovers(folder, (there.name, *NAMES))
     write_atomic(there, json_text(asked.model_dump(by_alias=True)))
 
 

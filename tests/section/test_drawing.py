@@ -224,3 +224,11 @@ def test_sides_through_centroids_are_straight(first: float) -> None:
 def test_values_that_are_no_chamber(make) -> None:
     with pytest.raises(ValueError, match=r"supply|r = |corner|radius"):
         make()
+
+
+@pytest.mark.parametrize(("first", "last"), [(152.2, 512.2), (152.3, 512.3)])
+def test_a_whole_turn_is_one_wherever_it_starts(first: float, last: float) -> None:
+    """No sides, so no corners: whichever way the difference of the decimals rounds."""
+    grid = PolarGrid()
+    turned = rasterise(grid, [RingPiece(1, (13.0, 22.0), (first, last), 1.5)])
+    np.testing.assert_array_equal(turned, rasterise(grid, [RingPiece(1, (13.0, 22.0), (0, 360))]))

@@ -7,9 +7,10 @@ import pytest
 from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.judge import Judge, Verdict
+from beamopt.judge import Judge, Status, Verdict
 from beamopt.optimisation import optimize
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
+from beamopt.study.report import NAMES
 from beamopt.study.run import run_study
 from beamopt.study.table import PAPER, Outcome, comparison_markdown, table_csv, table_markdown
 from tests.validation.resume import content
@@ -201,3 +202,30 @@ def test_processes_change_nothing(made, tmp_path: Path) -> None:
     out = str(tmp_path / "study")
     assert run(["study", "--out", out, "--iterations", "2", "--workers", "2", *settings]) == 0
     assert content(tmp_path / "study") == content(made[0])
+
+
+def test_a_study_writes_the_files_that_it_names_and_clears_what_a_kill_left(
+    made, tmp_path: Path
+) -> None:
+    folder = made[0]
+    held = {path.name for path in folder.iterdir()}
+    assert held == {*NAMES, "study.json", "runs"}
+    left = tmp_path / "study"
+    run_study(left, Plan(1, SMALL.seed, SMALL.overrides), figures=False)
+    (left / "best_ever.csv").unlink()
+    for name in (".best_ever.csv.12.tmp", ".convergence.svg.12.tmp", ".study.json.7.tmp"):
+        (left / name).write_text("half")
+    run_study(left, Plan(1, SMALL.seed, SMALL.overrides), resume=True, figures=False)
+    assert not list(left.glob(".*.tmp"))
+
+
+def test_searches_of_nothing_but_air_have_no_design(tmp_path: Path) -> None:
+    """Seed 3 begins with air alone, seed 4 does not: one design there is, of each target."""
+    keys = ("search.generations=0", "section.feature_points=1", "search.population=2")
+    outcomes = run_study(tmp_path / "study", Plan(2, 3, keys))
+    judged = [one.final.status is Status.JUDGED for one in outcomes]
+    assert judged == [False, True] * 12
+    assert (tmp_path / "study" / "table.csv").exists()
+    for one in outcomes:
+        final = tmp_path / "study" / "runs" / one.run.name / "final.json"
+        assert final.exists() == (one.final.status is Status.JUDGED)
