@@ -23,6 +23,7 @@ FLOORS = [
     ],
     ["beamopt.model", "beamopt.folder"],
     ["beamopt.section"],
+    ["beamopt.outline"],
     ["beamopt.rod"],
     ["beamopt.workspace"],
     ["beamopt.design", "beamopt.target", "beamopt.judge"],

@@ -1,0 +1,1 @@
+"""A section as polygons that a person could cut: sealed, smooth, checked, meshed from."""

@@ -1,0 +1,165 @@
+"""From a grid and feature points (or a drawing) to the outline of the section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.outline.cells import regions as cell_regions
+from beamopt.outline.cells import territories
+from beamopt.outline.drawn import drawn_regions
+from beamopt.outline.faults import Fault, FaultKind
+from beamopt.outline.inspection import contacts, nearest, thicknesses, topology, worst_first
+from beamopt.outline.outline import Chamber, Loop, Outline, Piece
+from beamopt.outline.resampling import resample
+from beamopt.outline.ring import fine_sagitta, ring_polygon
+from beamopt.outline.smoothing import Region, loops_of, parts_of, sealed_chambers
+from beamopt.section.drawing import Shape
+from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
+from beamopt.section.grid import PolarGrid
+from beamopt.section.moments import Moments
+from beamopt.section.seal import SealRules
+
+if TYPE_CHECKING:
+    from shapely import Geometry, Polygon
+
+__all__ = ["SLACK", "build_outline"]
+
+SLACK = 0.02
+"""mm; skins, walls and necks may be thinner than asked by this and twice the sagitta: chords of
+both sides cut into them by up to one sagitta each."""
+
+TRIES = 4  # at resampling, each with a quarter of the sagitta
+
+
+def build_outline(
+    grid: PolarGrid,
+    source: FeaturePoints | Sequence[Shape],
+    rules: SealRules,
+    sagitta: float = 0.04,
+) -> Outline:
+    """The section of feature points or of a drawing as polygons, sealed where `rules` are.
+
+    Without a skin nothing is changed: chambers are the Voronoi cells or the drawn shapes as they
+    are, clipped to the ring, and `rules.wall` is only checked.
+
+    sagitta : how far edges may be from the smooth outline [mm]; less where walls are thin.
+
+    Raises
+    ------
+    ValueError : a feature point farther than 10⁶ mm from the axis, a sagitta that is not positive.
+    """
+    if not 0 < sagitta < np.inf:
+        raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
+    ring = ring_polygon(grid)
+    smooth = _smooth(grid, source, rules, ring)
+    moments = _smooth_moments(grid, smooth)
+    faults = contacts(smooth, ring)
+    if faults:
+        pieces = _pieces(ring, smooth)
+        faults += topology(pieces, smooth)
+        return Outline(pieces, _chambers(smooth), worst_first(faults), moments)
+    unit = grid.outer_radius / 25
+    # an eighth of the thinnest wall, so that chords of its two sides can not meet
+    fine = min(sagitta, nearest(smooth, ring, 8 * sagitta) / 8)
+    if grid.inner_radius > 0:
+        fine = min(fine, (grid.outer_radius - grid.inner_radius) / 8)
+    for _ in range(TRIES):
+        coarse_ring = _resampled(ring, fine, unit)
+        regions = tuple(tuple(_resampled(part, fine, unit) for part in region) for region in smooth)
+        if _is_sound(coarse_ring, regions):
+            break
+        fine /= 4
+    else:
+        faults = [Fault(FaultKind.INVALID)]
+    pieces = _pieces(coarse_ring, regions)
+    faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
+    faults += topology(pieces, regions)
+    return Outline(pieces, _chambers(regions), worst_first(faults), moments)
+
+
+def _smooth(
+    grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules, ring: Polygon
+) -> tuple[Region, ...]:
+    extent = 4 * grid.outer_radius + 2 * rules.wall
+    claimed: tuple[Geometry, ...]
+    if isinstance(source, FeaturePoints):
+        claimed = cell_regions(source, extent)
+    else:
+        claimed = drawn_regions(source, fine_sagitta(grid))
+    if not rules.sealed:
+        return tuple(parts_of(claim.intersection(ring)) for claim in claimed)
+    territory = territories(source, extent) if isinstance(source, FeaturePoints) else None
+    return sealed_chambers(grid, claimed, territory, rules)
+
+
+def _smooth_moments(grid: PolarGrid, smooth: Sequence[Region]) -> Moments:
+    """Chambers as they are; material is what they leave of the ring, whose moments are exact."""
+    raw = np.zeros((1 + len(SUPPLIES), 6))
+    for chamber in _chambers(smooth):
+        raw[chamber.supply] += chamber.integrals
+    radial = grid.radial_integrals.sum(axis=1)[[0, 1, 1, 2, 2, 2]]
+    raw[MATERIAL] = radial * grid.angular_integrals[-1] - raw[1:].sum(axis=0)
+    return Moments(raw)
+
+
+def _resampled(polygon: Polygon, sagitta: float, unit: float) -> Polygon:
+    import shapely
+
+    # every loop the same way round, so that equal loops get equal vertices
+    loops = [loop[::-1] for loop in loops_of(polygon)]
+    exterior, *holes = (resample(loop, sagitta, unit) for loop in loops)
+    return shapely.Polygon(exterior, holes)
+
+
+def _is_sound(ring: Polygon, regions: Sequence[Region]) -> bool:
+    """Whether every polygon is simple, lies within the ring and touches no other."""
+    import shapely
+
+    parts = np.array([part for region in regions for part in region], dtype=object)
+    if not (ring.is_valid and shapely.is_valid(parts).all()):
+        return False
+    if not parts.size:
+        return True
+    first, second = shapely.STRtree(parts).query(parts, predicate="intersects")
+    return bool((first == second).all() and ring.contains_properly(parts).all())
+
+
+def _chambers(regions: Sequence[Region]) -> tuple[Chamber, ...]:
+    chambers = []
+    for supply, region in zip(SUPPLIES, regions, strict=True):
+        for part in sorted(region, key=lambda part: -part.area):
+            exterior, *holes = (_locked(loop[::-1]) for loop in loops_of(part))
+            chambers.append(Chamber(supply, exterior, tuple(holes)))
+    return tuple(chambers)
+
+
+def _locked(points: FloatArray) -> FloatArray:
+    points = np.ascontiguousarray(points)
+    points.setflags(write=False)
+    return points
+
+
+def _pieces(ring: Polygon, regions: Sequence[Region]) -> tuple[Piece, ...]:
+    """What chambers leave of the ring, each loop named after the chamber that its points are of."""
+    import shapely
+
+    parts = [part for region in regions for part in region]
+    material = parts_of(ring.difference(shapely.union_all(parts)))
+    owner = {
+        tuple(point): supply
+        for supply, region in zip(SUPPLIES, regions, strict=True)
+        for part in region
+        for point in shapely.get_coordinates(part).tolist()
+    }
+    pieces = []
+    for polygon in sorted(material, key=lambda polygon: -polygon.area):
+        loops = []
+        for points in (loop[::-1] for loop in loops_of(polygon)):
+            owners = {owner.get(tuple(point), MATERIAL) for point in points.tolist()}
+            loops.append(Loop(_locked(points), owners.pop() if len(owners) == 1 else MATERIAL))
+        pieces.append(Piece(loops[0], tuple(loops[1:])))
+    return tuple(pieces)

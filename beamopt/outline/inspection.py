@@ -1,0 +1,156 @@
+"""What is wrong with an outline, found on the polygons themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamopt.outline.faults import Fault, FaultKind, Severity
+from beamopt.outline.outline import Piece
+from beamopt.outline.rays import thin_places
+from beamopt.outline.smoothing import Region, loops_of
+from beamopt.section.feature_points import SUPPLIES
+from beamopt.section.seal import SealRules
+
+if TYPE_CHECKING:
+    from shapely import Geometry, Polygon
+
+__all__ = ["contacts", "nearest", "thicknesses", "topology", "worst_first"]
+
+TOUCH = 0.01
+"""mm; what is nearer is not separated by a wall."""
+
+SPACING = 0.1  # mm between rays
+FACING = 0.7  # cosine: walls that close in on each other by more than 45° are a corner's two sides
+
+
+def worst_first(faults: Sequence[Fault]) -> tuple[Fault, ...]:
+    """Fatal ones, then violations, then notices; otherwise as found."""
+    rank = {severity: k for k, severity in enumerate(reversed(Severity))}
+    return tuple(sorted(faults, key=lambda fault: rank[fault.severity]))
+
+
+def contacts(regions: Sequence[Region], ring: Polygon) -> list[Fault]:
+    """Chambers that are open to a surface or to another supply, or that touch one another."""
+    faults = []
+    for supply, distance, place in _to_surface(regions, ring, TOUCH):
+        faults.append(Fault(FaultKind.UNSEALED, distance, place, (supply,)))
+    for supplies, distance, place in _between(regions, TOUCH):
+        kind = FaultKind.UNSEALED if len(supplies) > 1 else FaultKind.INVALID
+        faults.append(Fault(kind, distance, place, supplies))
+    return faults
+
+
+def nearest(regions: Sequence[Region], ring: Polygon, reach: float) -> float:
+    """Least distance between two chambers, or one and a surface; `reach` when none is nearer."""
+    surface = [distance for _, distance, _ in _to_surface(regions, ring, reach)]
+    between = [distance for _, distance, _ in _between(regions, reach)]
+    return min([reach, *surface, *between])
+
+
+def thicknesses(
+    regions: Sequence[Region], ring: Polygon, rules: SealRules, tolerance: float
+) -> list[Fault]:
+    """Skins, walls and necks more than `tolerance` [mm] thinner than asked.
+
+    Distances between different polygons are exact; within one chamber, rays look for material
+    between two of its walls that face each other.
+    """
+    faults = []
+    for supply, distance, place in _to_surface(regions, ring, rules.skin - tolerance):
+        faults.append(Fault(FaultKind.SKIN, distance, place, (supply,), rules.skin))
+    below = rules.wall - tolerance
+    for supplies, distance, place in _between(regions, below):
+        kind = FaultKind.WALL if len(supplies) > 1 else FaultKind.NECK
+        faults.append(Fault(kind, distance, place, supplies, rules.wall))
+    if below > 0:
+        for supply, region in zip(SUPPLIES, regions, strict=True):
+            for part in region:
+                faults += _self_necks(supply, part, rules.wall, below)
+    return faults
+
+
+def _self_necks(supply: int, part: Polygon, wall: float, below: float) -> list[Fault]:
+    thin = thin_places(loops_of(part), below, SPACING, FACING)
+    faults: list[Fault] = []
+    for k in np.argsort(thin.thickness, kind="stable"):
+        x, y = (float(value) for value in thin.middle[k])
+        apart = all(
+            fault.place and np.hypot(x - fault.place[0], y - fault.place[1]) > 2 * wall
+            for fault in faults
+        )
+        if apart:  # a long thin wall is one fault, at its thinnest
+            faults.append(Fault(FaultKind.NECK, float(thin.thickness[k]), (x, y), (supply,), wall))
+    return faults
+
+
+def topology(pieces: Sequence[Piece], regions: Sequence[Region]) -> list[Fault]:
+    """Missing material, pieces that do not hang together, islands, missing chambers."""
+    faults = []
+    if not pieces:
+        faults.append(Fault(FaultKind.NO_MATERIAL))
+    standing = [piece for piece in pieces if not piece.is_island]
+    if len(standing) > 1:
+        place = _inner_point(standing[1])
+        faults.append(Fault(FaultKind.PIECES, float(len(standing)), place))
+    for piece in pieces:
+        if piece.is_island:
+            around = (piece.exterior.supply,)
+            faults.append(Fault(FaultKind.ISLAND, piece.area, _inner_point(piece), around))
+    for supply, region in zip(SUPPLIES, regions, strict=True):
+        if not region:
+            faults.append(Fault(FaultKind.NO_CHAMBER, supplies=(supply,)))
+    return faults
+
+
+def _inner_point(piece: Piece) -> tuple[float, float]:
+    import shapely
+
+    polygon = shapely.Polygon(piece.exterior.points, [hole.points for hole in piece.holes])
+    return _xy(polygon.point_on_surface())
+
+
+def _xy(point: Geometry) -> tuple[float, float]:
+    return float(point.x), float(point.y)
+
+
+def _to_surface(
+    regions: Sequence[Region], ring: Polygon, below: float
+) -> list[tuple[int, float, tuple[float, float]]]:
+    """Supply, distance and place of every chamber nearer than that to a surface."""
+    import shapely
+
+    found = []
+    surface = ring.boundary
+    shapely.prepare(surface)
+    for supply, region in zip(SUPPLIES, regions, strict=True):
+        for part in region:
+            if below <= 0 or not shapely.dwithin(surface, part.boundary, below):
+                continue
+            line = shapely.shortest_line(surface, part.boundary)
+            found.append((supply, line.length, _xy(line.interpolate(0.5, normalized=True))))
+    return found
+
+
+def _between(
+    regions: Sequence[Region], below: float
+) -> list[tuple[tuple[int, ...], float, tuple[float, float]]]:
+    """Supplies, distance and place of every two chambers nearer than that to each other."""
+    import shapely
+
+    parts = [
+        (supply, part) for supply, region in zip(SUPPLIES, regions, strict=True) for part in region
+    ]
+    if below <= 0 or len(parts) < 2:
+        return []
+    shapes = np.array([part for _, part in parts])
+    first, second = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=below)
+    found = []
+    for i, j in sorted(zip(first.tolist(), second.tolist(), strict=True)):
+        if i < j:
+            line = shapely.shortest_line(shapes[i], shapes[j])
+            supplies = tuple(sorted({parts[i][0], parts[j][0]}))
+            found.append((supplies, line.length, _xy(line.interpolate(0.5, normalized=True))))
+    return found

@@ -1,0 +1,168 @@
+"""From the regions that supplies claim to chambers with skins, walls and rounded corners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.outline.rays import thin_places
+from beamopt.outline.ring import QUAD_SEGS, fine_sagitta, shrunk_ring
+from beamopt.section.grid import PolarGrid
+from beamopt.section.seal import SealRules
+
+if TYPE_CHECKING:
+    from shapely import Geometry, Polygon
+
+__all__ = ["Region", "loops_of", "parts_of", "sealed_chambers"]
+
+Region = tuple["Polygon", ...]
+"""The chambers of one supply, apart from each other."""
+
+ROUNDS = 12
+"""Times that necks are cut; most sections need one or two, and what is left is named."""
+
+MARGIN = 0.01
+"""mm that a cut neck gets more than was asked: flats of arcs may not make it a neck again."""
+
+NARROWEST = 0.05
+"""mm; channels narrower than twice this go even where no corner is rounded."""
+
+CONTACT = 1e-3
+"""mm; regions nearer to each other than this touch: no ray fits between them."""
+
+
+def sealed_chambers(
+    grid: PolarGrid,
+    claimed: Sequence[Geometry],
+    territory: Sequence[Geometry] | None,
+    rules: SealRules,
+) -> tuple[Region, ...]:
+    """Chambers of supplies 1, 2, 3 that keep the rules.
+
+    claimed : what each supply would like to have.
+    territory : disjoint sets that hold the claims, or None: then walls between supplies are made
+        by cutting alone.
+
+    1. A chamber stays `skin` from every surface and half a wall from the edge of its territory.
+    2. It is closed by half a wall: material within it that is thinner, between two of its parts,
+       becomes chamber. Both bounds are erosions by at least that much or are kept by cutting with
+       them, so neither skin nor walls suffer.
+    3. It is opened by `rounding`, which rounds its corners and removes slivers.
+    4. Where material is still thinner than a wall, a disc as wide as the wall is put there, and 3
+       is done again. Chambers only shrink by that, so it comes to rest.
+    """
+    import shapely
+
+    inside = shrunk_ring(grid, rules.skin)
+    half = rules.wall / 2
+    chambers = []
+    for k, claim in enumerate(claimed):
+        bound = inside
+        if territory is not None and half > 0:
+            bound = bound.intersection(_offset(territory[k], -half))
+        elif territory is None:
+            bound = bound.difference(shapely.union_all([*claimed[:k], *claimed[k + 1 :]]))
+        chamber = claim.intersection(bound)
+        if half > 0:
+            chamber = _offset(_offset(chamber, half), -half).intersection(bound)
+        chambers.append(chamber)
+    if territory is None and half > 0:
+        chambers = _parted(chambers, half)
+    regions = [_opened(chamber, rules.rounding) for chamber in chambers]
+    for _ in range(ROUNDS if half > 0 else 0):
+        regions = _without_islands(regions, grid, rules)
+        cut = _necks(regions, rules.wall)
+        if cut is None:
+            break
+        regions = [
+            _opened(shapely.multipolygons(list(region)).difference(cut), rules.rounding)
+            for region in regions
+        ]
+    regions = [
+        tuple(part for part in region if part.area >= rules.smallest_chamber) for region in regions
+    ]
+    regions = _without_islands(regions, grid, rules)
+    tolerance = fine_sagitta(grid) / 5  # drops the crumbs that cutting leaves on straight edges
+    return tuple(tuple(shapely.simplify(part, tolerance) for part in region) for region in regions)
+
+
+def _offset(geometry: Geometry, by: float) -> Geometry:
+    return geometry.buffer(by, quad_segs=QUAD_SEGS)
+
+
+def _opened(geometry: Geometry, rounding: float) -> Region:
+    """What a disc of radius `rounding` [mm] reaches from inside."""
+    if rounding > 0:
+        return parts_of(_offset(_offset(geometry, -rounding), rounding))
+    # mitred, so that corners stay sharp
+    thinned = geometry.buffer(-NARROWEST, join_style="mitre")
+    return parts_of(thinned.buffer(NARROWEST, join_style="mitre").intersection(geometry))
+
+
+def _parted(chambers: Sequence[Geometry], half: float) -> list[Geometry]:
+    """Chambers of different supplies cut back by half a wall where they touch."""
+    near = [chamber.buffer(CONTACT) for chamber in chambers]
+    for i in range(len(chambers)):
+        for j in range(i):
+            contact = near[i].intersection(near[j])
+            if not contact.is_empty:
+                wall = _offset(contact, half)
+                chambers = [chamber.difference(wall) for chamber in chambers]
+    return list(chambers)
+
+
+def _necks(regions: Sequence[Region], wall: float) -> Geometry | None:
+    """Discs that make every place where material is too thin as thick as a wall."""
+    import shapely
+
+    loops = [loop for region in regions for part in region for loop in loops_of(part)]
+    thin = thin_places(loops, wall - MARGIN / 4, spacing=wall / 9, opposed=0.5)
+    if not thin.thickness.size:
+        return None
+    return _offset(shapely.multipoints(thin.middle), (wall + MARGIN) / 2)
+
+
+def _without_islands(regions: Sequence[Region], grid: PolarGrid, rules: SealRules) -> list[Region]:
+    """Holes of chambers filled, where only material stands in them that touches no surface."""
+    import shapely
+
+    if not rules.remove_islands:
+        return list(regions)
+    everything = shapely.multipolygons([part for region in regions for part in region])
+    axis = shapely.Point(0, 0)
+    filled = []
+    for region in regions:
+        parts = []
+        for part in region:
+            kept = []
+            for hole in part.interiors:
+                inside = shapely.Polygon(hole)
+                on_inner_surface = grid.inner_radius > 0 and inside.contains(axis)
+                if on_inner_surface or inside.intersection(everything).area > 0:
+                    kept.append(hole)
+            parts.append(shapely.Polygon(part.exterior, kept))
+        filled.append(tuple(parts))
+    return filled
+
+
+def parts_of(geometry: Geometry) -> Region:
+    """The polygons of a geometry, lines and points left out."""
+    import shapely
+
+    parts = shapely.get_parts(geometry)
+    flat = [piece for part in parts for piece in shapely.get_parts(part)]
+    return tuple(part for part in flat if part.geom_type == "Polygon" and part.area > 0)
+
+
+def loops_of(polygon: Polygon) -> list[FloatArray]:
+    """(n, 2) loops of a chamber [mm], material on their left."""
+    import shapely
+
+    turned = shapely.orient_polygons(polygon, exterior_cw=True)
+    return [
+        np.asarray(shapely.get_coordinates(ring))[:-1]
+        for ring in (turned.exterior, *turned.interiors)
+    ]
