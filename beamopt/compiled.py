@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
@@ -15,23 +16,22 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 SETTINGS: Any = numba.config
-KERNELS = Path(__file__).parent / "section"
 
 
-def _cache_folder() -> str:
-    """A folder for the kernels as they stand now.
+@cache
+def _cache_folder(room: Path) -> str:
+    """A folder for the kernels of a room (a folder of modules) as they stand now.
 
     Kernels are compiled into those that call them, but numba looks only at the file of the one it
-    loads: after a change in another file it would go on with the old code.
+    loads: after a change in another file it would go on with the old code. Kernels therefore call
+    kernels of their own room only.
     """
     state = hashlib.blake2b(digest_size=8)
-    for source in sorted(KERNELS.glob("*.py")):
+    for source in sorted(room.glob("*.py")):
         state.update(source.read_bytes())
+    name = f"kernels-{state.hexdigest()}"
     above = SETTINGS.CACHE_DIR or str(Path(__file__).parent / "__pycache__")
-    return str(Path(above) / f"kernels-{state.hexdigest()}")
-
-
-CACHE_FOLDER = _cache_folder()
+    return str(Path(above) / name)
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -41,7 +41,8 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     without re-association or contraction, so that a result does not depend on how a batch is cut,
     and divide as numpy does.
     """
-    before, SETTINGS.CACHE_DIR = SETTINGS.CACHE_DIR, CACHE_FOLDER
+    folder = _cache_folder(Path(function.__code__.co_filename).parent)
+    before, SETTINGS.CACHE_DIR = SETTINGS.CACHE_DIR, folder
     try:
         options = numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")
         return cast("Callable[P, R]", options(function))

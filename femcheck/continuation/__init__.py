@@ -1,0 +1,1 @@
+"""Finding equilibria: direct solver, Newton's method, load steps, predictors, and how each ended."""

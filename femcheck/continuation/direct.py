@@ -1,0 +1,155 @@
+"""Direct solvers for symmetric indefinite matrices: PARDISO where it installs, SuperLU elsewhere."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, Protocol
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from femcheck.assembly.reduction import UpperMatrix
+
+__all__ = ["DirectSolver", "Pardiso", "SingularMatrix", "SuperLU", "direct_solver"]
+
+
+class SingularMatrix(ArithmeticError):
+    """The matrix could not be factored, or its solution is not finite."""
+
+
+class DirectSolver(Protocol):
+    """Factor once, solve often; all matrices of a solver have one pattern."""
+
+    name: str
+    factor_seconds: float
+    solve_seconds: float
+
+    def factor(self, matrix: UpperMatrix) -> None:
+        """Factor, or raise `SingularMatrix`."""
+        ...
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution of the last factored system; raises `SingularMatrix`."""
+        ...
+
+    @property
+    def negative_eigenvalues(self) -> int | None:
+        """Negative eigenvalues of the last factored matrix; None where the solver can not tell."""
+        ...
+
+
+def direct_solver(name: str = "auto") -> DirectSolver:
+    """PARDISO if it is installed and `name` allows it, else SuperLU.
+
+    Raises
+    ------
+    ValueError : `name` is not "auto", "pardiso" or "superlu".
+    ImportError : PARDISO was asked for by name and is not installed.
+    """
+    if name not in ("auto", "pardiso", "superlu"):
+        raise ValueError(f"solver = {name}: one of auto, pardiso, superlu")
+    if name == "superlu":
+        return SuperLU()
+    try:
+        return Pardiso()
+    except ImportError:
+        if name == "pardiso":
+            raise
+        return SuperLU()
+
+
+class Pardiso:
+    """MKL's PARDISO on the upper triangle, symmetric indefinite, one symbolic analysis."""
+
+    name = "PARDISO"
+
+    def __init__(self) -> None:
+        from pypardiso.pardiso_wrapper import PyPardisoError, PyPardisoSolver
+
+        self._failure = PyPardisoError
+        self._solver: Any = PyPardisoSolver(mtype=-2)
+        for place, value in ((1, 1), (2, 2), (8, 2), (10, 8), (11, 1), (13, 1), (21, 1)):
+            # own settings; nested dissection; refinement; pivots of 1e-8, scaling, matching
+            self._solver.set_iparm(place, value)
+        self._analysed: tuple[int, int] | None = None
+        self._matrix: Any = None
+        self.factor_seconds = self.solve_seconds = 0.0
+
+    def factor(self, matrix: UpperMatrix) -> None:
+        """Factor, or raise `SingularMatrix`."""
+        from scipy.sparse import csr_matrix
+
+        began = time.perf_counter()
+        if not np.isfinite(matrix.data).all():
+            raise SingularMatrix("the tangent has entries that are not finite")
+        pattern = (matrix.size, matrix.indices.size)
+        shape = (matrix.size, matrix.size)
+        self._matrix = csr_matrix((matrix.data, matrix.indices, matrix.starts), shape=shape)
+        self._call(22 if self._analysed == pattern else 12, np.zeros((matrix.size, 1)))
+        self._analysed = pattern
+        self.factor_seconds += time.perf_counter() - began
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution of the last factored system; raises `SingularMatrix`."""
+        began = time.perf_counter()
+        result = self._call(33, np.asfortranarray(right))
+        self.solve_seconds += time.perf_counter() - began
+        if not np.isfinite(result).all():
+            raise SingularMatrix("the solution is not finite")
+        return result
+
+    def _call(self, phase: int, right: FloatArray) -> FloatArray:
+        self._solver.set_phase(phase)
+        try:
+            return np.asarray(self._solver._call_pardiso(self._matrix, right))
+        except self._failure as error:
+            raise SingularMatrix(str(error)) from None
+
+    @property
+    def negative_eigenvalues(self) -> int | None:
+        """Negative eigenvalues of the last factored matrix."""
+        return int(self._solver.get_iparm(23))
+
+    def __del__(self) -> None:
+        if getattr(self, "_matrix", None) is not None:
+            self._solver.free_memory(everything=True)
+
+
+class SuperLU:
+    """scipy's SuperLU on the whole matrix; slower, and it can not count eigenvalues."""
+
+    name = "SuperLU"
+
+    def __init__(self) -> None:
+        self._factors: Any = None
+        self.factor_seconds = self.solve_seconds = 0.0
+
+    def factor(self, matrix: UpperMatrix) -> None:
+        """Factor, or raise `SingularMatrix`."""
+        from scipy.sparse.linalg import splu
+
+        began = time.perf_counter()
+        try:
+            self._factors = splu(
+                matrix.whole().tocsc(),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.01,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError as error:
+            raise SingularMatrix(str(error)) from None
+        self.factor_seconds += time.perf_counter() - began
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution of the last factored system; raises `SingularMatrix`."""
+        began = time.perf_counter()
+        result = np.asarray(self._factors.solve(np.ascontiguousarray(right)))
+        self.solve_seconds += time.perf_counter() - began
+        if not np.isfinite(result).all():
+            raise SingularMatrix("the solution is not finite")
+        return result
+
+    @property
+    def negative_eigenvalues(self) -> int | None:
+        """Not known."""
+        return None

@@ -1,0 +1,1 @@
+"""Hyperelastic laws, one class each."""

@@ -1,0 +1,33 @@
+"""What every hyperelastic law gives: energy, stress and stiffness from the right Cauchy–Green."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from beamopt.arrays import FloatArray
+
+__all__ = ["Law"]
+
+
+class Law(Protocol):
+    """An energy W(C) per undeformed volume, axis 3 along the undeformed actuator.
+
+    Symmetric tensors are stored as six numbers in the order 11, 22, 33, 12, 23, 13.
+    """
+
+    @property
+    def name(self) -> str:
+        """The name that files and reports use."""
+        ...
+
+    def energy(self, C: FloatArray) -> FloatArray:
+        """W (n,) [kPa = mJ/cm³·10⁻³] at C (n, 6)."""
+        ...
+
+    def stress(self, C: FloatArray) -> FloatArray:
+        """Second Piola–Kirchhoff stress S = 2 ∂W/∂C (n, 6) [kPa]."""
+        ...
+
+    def stiffness(self, C: FloatArray) -> FloatArray:
+        """∂S/∂E (n, 6, 6) [kPa] by (E11, E22, E33, 2 E12, 2 E23, 2 E13); symmetric."""
+        ...

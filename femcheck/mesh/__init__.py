@@ -1,0 +1,1 @@
+"""From the outline of a section to a volume mesh with tags."""

@@ -1,0 +1,1 @@
+"""The pressurised solid: discretisation, chamber volumes, tip plate, equilibrium."""
