@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from typing import Any, Protocol
 
@@ -111,7 +112,7 @@ class Pardiso:
         return int(self._solver.get_iparm(23))
 
     def __del__(self) -> None:
-        if getattr(self, "_matrix", None) is not None:
+        if getattr(self, "_matrix", None) is not None and not sys.is_finalizing():
             self._solver.free_memory(everything=True)
 
 

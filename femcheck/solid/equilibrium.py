@@ -73,8 +73,10 @@ class Equilibrium:
         return volumes + body.cap_areas * (state.tip @ state.turn[:, 2]) / 3
 
     def strain_energy(self, state: State) -> float:
-        """∫ W dV [mN mm]."""
-        _, C, _ = self._deformation(state)
+        """∫ W dV [mN mm]; infinite where an element is inverted."""
+        _, C, least = self._deformation(state)
+        if least <= 0:
+            return float("inf")
         density = self.law.energy(C.reshape(-1, 6)).reshape(self.body.weights.shape)
         return float((density * self.body.weights).sum())
 

@@ -1,0 +1,107 @@
+"""From a known equilibrium to another pressure, in as few load steps as it takes."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from femcheck.continuation.direct import DirectSolver
+from femcheck.continuation.newton import Newton
+from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.shape import Shapes
+from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solid.state import State
+
+__all__ = ["LoadSteps"]
+
+
+@dataclass(frozen=True, slots=True)
+class LoadSteps:
+    """Settings of the walk.
+
+    smallest : share of the load below which a step is too small.
+    shrink, grow : factors of a step after a failure and after a success.
+    seconds : time limit of a walk [s].
+    """
+
+    newton: Newton = Newton()
+    smallest: float = 1 / 256
+    shrink: float = 0.5
+    grow: float = 2.0
+    seconds: float = 600.0
+
+    def walk(
+        self,
+        problem: Equilibrium,
+        shapes: Shapes,
+        start: tuple[State, FloatArray],
+        pressures: FloatArray,
+        solver: DirectSolver,
+        guess: State | None = None,
+    ) -> Outcome:
+        """The equilibrium at `pressures` (3,) [kPa].
+
+        Parameters
+        ----------
+        start : a known equilibrium and its pressures.
+        guess : a state to try at once, before any steps.
+        """
+        began = time.perf_counter()
+        deadline = began + self.seconds
+        spent = Statistics()
+        tried = self.newton.solve(problem, guess or start[0], pressures, solver, deadline)
+        _add(spent, tried.statistics)
+        if tried.status is not Status.CONVERGED:
+            tried = self._in_steps(problem, shapes, start, pressures, solver, deadline, spent)
+        spent.seconds = time.perf_counter() - began
+        return Outcome(
+            tried.status,
+            tried.state,
+            tried.reached,
+            tried.residual,
+            tried.negative_eigenvalues,
+            spent,
+        )
+
+    def _in_steps(
+        self,
+        problem: Equilibrium,
+        shapes: Shapes,
+        start: tuple[State, FloatArray],
+        pressures: FloatArray,
+        solver: DirectSolver,
+        deadline: float,
+        spent: Statistics,
+    ) -> Outcome:
+        state, first = start
+        at, step = 0.0, 0.5
+        here = shapes.of(state)
+        slope = np.zeros_like(here)
+        while True:
+            to = min(at + step, 1.0)
+            between = first + to * (pressures - first)
+            guess = shapes.state(here + (to - at) * slope)
+            tried = self.newton.solve(problem, guess, between, solver, deadline)
+            _add(spent, tried.statistics)
+            if tried.state is not None:
+                now = shapes.of(tried.state)
+                slope, here = (now - here) / (to - at), now
+                at = to
+                if at == 1.0:
+                    return tried
+                step *= self.grow
+                continue
+            step *= self.shrink
+            if tried.status is Status.TIME_OUT or step < self.smallest:
+                return Outcome(tried.status, None, at)
+
+
+def _add(total: Statistics, part: Statistics) -> None:
+    total.steps += part.steps
+    total.iterations += part.iterations
+    total.assembly_seconds += part.assembly_seconds
+    total.factor_seconds += part.factor_seconds
+    total.solve_seconds += part.solve_seconds

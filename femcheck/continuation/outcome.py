@@ -1,0 +1,52 @@
+"""How finding an equilibrium ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from femcheck.solid.state import State
+
+__all__ = ["Outcome", "Statistics", "Status"]
+
+
+class Status(Enum):
+    """How a case ended; the value is the text shown to people."""
+
+    CONVERGED = "converged"
+    INVERTED = "an element turned inside out"
+    STEP_TOO_SMALL = "load steps became too small"
+    LINEAR_SOLVER = "the linear solver found no solution"
+    TIME_OUT = "time limit reached"
+    STOPPED = "its process ended before it was solved"
+
+
+@dataclass
+class Statistics:
+    """What an equilibrium cost; sums over all its load steps."""
+
+    steps: int = 0
+    iterations: int = 0
+    seconds: float = 0.0
+    assembly_seconds: float = 0.0
+    factor_seconds: float = 0.0
+    solve_seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """An equilibrium, or why there is none.
+
+    state : the equilibrium; None unless converged.
+    reached : share of the load at which the last equilibrium was found.
+    residual : largest out-of-balance force at it [mN].
+    negative_eigenvalues : of the tangent there; 0 for a stable equilibrium, None where the solver
+        can not count them: stability was not checked then.
+    """
+
+    status: Status
+    state: State | None
+    reached: float = 0.0
+    residual: float = float("nan")
+    negative_eigenvalues: int | None = None
+    statistics: Statistics = field(default_factory=Statistics)
