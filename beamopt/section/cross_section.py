@@ -15,6 +15,8 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
 from beamopt.section.pieces import Pieces, count_pieces
 from beamopt.section.raster import raster
+from beamopt.section.seal import UNSEALED, SealRules
+from beamopt.section.sealing import seal_drawing, seal_points
 from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["CrossSection"]
@@ -45,16 +47,28 @@ class CrossSection:
 
     @classmethod
     def from_points(
-        cls, grid: PolarGrid, points: FeaturePoints, wall_elements: int = 4
+        cls,
+        grid: PolarGrid,
+        points: FeaturePoints,
+        wall_elements: int = 4,
+        rules: SealRules = UNSEALED,
     ) -> CrossSection:
-        """The Voronoi section of feature points, with walls between different supplies."""
+        """The Voronoi section of feature points, with walls between different supplies, sealed."""
+        if rules != UNSEALED:
+            return cls(grid, seal_points(grid, points, wall_steps(wall_elements), rules))
         return cls(grid, _walled(grid, raster(grid, points), wall_elements))
 
     @classmethod
     def from_drawing(
-        cls, grid: PolarGrid, shapes: Sequence[Shape], wall_elements: int = 4
+        cls,
+        grid: PolarGrid,
+        shapes: Sequence[Shape],
+        wall_elements: int = 4,
+        rules: SealRules = UNSEALED,
     ) -> CrossSection:
-        """The section of drawn chambers, with walls between different supplies."""
+        """The section of drawn chambers, with walls between different supplies, sealed."""
+        if rules != UNSEALED:
+            return cls(grid, seal_drawing(grid, shapes, wall_steps(wall_elements), rules))
         return cls(grid, _walled(grid, rasterise(grid, shapes), wall_elements))
 
     @cached_property

@@ -16,6 +16,9 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, sum_moments
 from beamopt.section.neighbours import count_edges, neighbour_ratio
 from beamopt.section.raster import Tiling, nearest_types, tiling
+from beamopt.section.seal import UNSEALED, SealRules
+from beamopt.section.seal_table import SealTable, Work, seal_table, work
+from beamopt.section.sealing import sealed_cells
 from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["Phenotypes", "phenotypes"]
@@ -34,26 +37,29 @@ class Phenotypes:
 
 
 def phenotypes(
-    grid: PolarGrid, candidates: Sequence[FeaturePoints], wall_elements: int
+    grid: PolarGrid,
+    candidates: Sequence[FeaturePoints],
+    wall_elements: int,
+    rules: SealRules = UNSEALED,
 ) -> Phenotypes:
-    """Rasterise, wall and measure every candidate; the same numbers as one by one."""
+    """Rasterise, wall, seal and measure every candidate; the same numbers as one by one."""
     ends = np.cumsum([0] + [len(points) for points in candidates])
     raw = np.zeros((len(candidates), 4, 6))
     edges = np.zeros((len(candidates), 2))
     if candidates:
-        _measure(
-            np.concatenate([points.x for points in candidates]),
-            np.concatenate([points.y for points in candidates]),
-            np.concatenate([points.type for points in candidates]),
-            ends,
-            tiling(grid),
-            wall_steps(wall_elements),
-            grid.is_full_ring,
-            grid.radial_integrals,
-            grid.angular_integrals,
-            raw,
-            edges,
+        x, y, types = (
+            np.concatenate([getattr(points, name) for points in candidates])
+            for name in ("x", "y", "type")
         )
+        steps, tiles = wall_steps(wall_elements), tiling(grid)
+        integrals = grid.radial_integrals, grid.angular_integrals
+        if rules == UNSEALED:
+            ring = grid.is_full_ring
+            _measure(x, y, types, ends, tiles, steps, ring, *integrals, raw, edges)
+        else:
+            table = seal_table(grid, rules)
+            space = work(grid, table)
+            _measure_sealed(x, y, types, ends, tiles, steps, table, space, *integrals, raw, edges)
     return Phenotypes(Moments(raw), neighbour_ratio(edges[:, 0], edges[:, 1]))
 
 
@@ -77,5 +83,28 @@ def _measure(
         labels[:] = 0
         nearest_types(x[a:b], y[a:b], types[a:b], tiles, labels)
         add_walls(labels, wall_steps, periodic)
+        sum_moments(labels, radial, angular, raw[k])
+        edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])
+
+
+@compiled
+def _measure_sealed(
+    x: FloatArray,
+    y: FloatArray,
+    types: LabelArray,
+    ends: NDArray[np.int64],
+    tiles: Tiling,
+    wall_steps: int,
+    table: SealTable,
+    space: Work,
+    radial: FloatArray,
+    angular: FloatArray,
+    raw: FloatArray,
+    edges: FloatArray,
+) -> None:
+    labels = np.zeros((radial.shape[1], angular.shape[0] - 1), dtype=np.uint8)
+    for k in range(raw.shape[0]):
+        a, b = ends[k], ends[k + 1]
+        sealed_cells(x[a:b], y[a:b], types[a:b], tiles, wall_steps, table, space, labels)
         sum_moments(labels, radial, angular, raw[k])
         edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])

@@ -94,9 +94,16 @@ def raster(grid: PolarGrid, points: FeaturePoints) -> LabelArray:
 
 @compiled
 def nearest_types(
-    px: FloatArray, py: FloatArray, types: LabelArray, tiles: Tiling, labels: LabelArray
+    px: FloatArray,
+    py: FloatArray,
+    types: LabelArray | IndexArray,
+    tiles: Tiling,
+    labels: LabelArray | IndexArray,
 ) -> None:
-    """Write each element's type to `labels`, which stays as it is when there is no point."""
+    """Write each element's type to `labels`, which stays as it is when there is no point.
+
+    With the points' indices for types, it is the nearest point's index.
+    """
     n = px.size
     if n == 0:
         return
@@ -157,7 +164,7 @@ def _possible(
 def _nearest_in_tile(
     px: FloatArray,
     py: FloatArray,
-    types: LabelArray,
+    types: LabelArray | IndexArray,
     near: IndexArray,
     x: FloatArray,
     y: FloatArray,
