@@ -12,7 +12,7 @@ from beamopt.outline.cells import regions as cell_regions
 from beamopt.outline.cells import territories
 from beamopt.outline.drawn import drawn_regions
 from beamopt.outline.faults import Fault, FaultKind
-from beamopt.outline.inspection import contacts, nearest, thicknesses, topology, worst_first
+from beamopt.outline.inspection import TOUCH, contacts, nearest, thicknesses, topology, worst_first
 from beamopt.outline.outline import Chamber, Loop, Outline, Piece
 from beamopt.outline.resampling import resample
 from beamopt.outline.ring import fine_sagitta, ring_polygon
@@ -54,12 +54,19 @@ def build_outline(
     """
     if not 0 < sagitta < np.inf:
         raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
+    import shapely
+
     ring = ring_polygon(grid)
     smooth = _smooth(grid, source, rules, ring)
     moments = _smooth_moments(grid, smooth)
     faults = contacts(smooth, ring)
     if faults:
-        pieces = _pieces(ring, smooth)
+        # arcs of chambers along surfaces leave crescents that are no material
+        pieces = tuple(
+            piece
+            for piece in _pieces(ring, smooth)
+            if 2 * piece.area > TOUCH * shapely.length(shapely.LinearRing(piece.exterior.points))
+        )
         faults += topology(pieces, smooth)
         return Outline(pieces, _chambers(smooth), worst_first(faults), moments)
     unit = grid.outer_radius / 25

@@ -86,12 +86,12 @@ def _cells(x: FloatArray, y: FloatArray, extent: float) -> list[list[tuple[float
             continue
         cell = square
         reach = _reach(cell, a, b)
-        for other in np.argsort(squared, kind="stable"):
-            if squared[other] > 4 * reach:
+        nearest = np.argsort(squared, kind="stable")
+        for u, v, far in zip(*(a[nearest].tolist() for a in (x, y, squared)), strict=True):
+            if far > 4 * reach:
                 break
-            if squared[other] < SAME_PLACE**2:
+            if far < SAME_PLACE**2:
                 continue
-            u, v = float(x[other]), float(y[other])
             # (u − a) X + (v − b) Y ≤ c on this side of the bisector
             c = ((u - a) * (u + a) + (v - b) * (v + b)) / 2
             clipped = _clip(cell, u - a, v - b, c)

@@ -45,7 +45,7 @@ class Fault:
 
     Parameters
     ----------
-    kind : what is wrong.
+    status : what is wrong.
     value : thickness [mm] of a skin, wall or neck and of what is unsealed or invalid; area [mm²]
         of an island; pieces of material; 0 for what is missing.
     place : where [mm], or None for the section as a whole.
@@ -53,7 +53,7 @@ class Fault:
     asked : the thickness that the rules ask for [mm], or None.
     """
 
-    kind: FaultKind
+    status: FaultKind
     value: float = 0.0
     place: tuple[float, float] | None = None
     supplies: tuple[int, ...] = ()
@@ -62,7 +62,7 @@ class Fault:
     @property
     def severity(self) -> Severity:
         """Notice, violation or fatal."""
-        return self.kind.severity
+        return self.status.severity
 
     def __str__(self) -> str:
         where = f" at ({self.place[0]:.1f}, {self.place[1]:.1f}) mm" if self.place else ""
@@ -73,7 +73,7 @@ class Fault:
         numbers = " and ".join(str(supply) for supply in self.supplies)
         many = "supplies" if len(self.supplies) > 1 else "supply"
         thickness = f"{self.value:.3f} mm"
-        match self.kind:
+        match self.status:
             case FaultKind.SKIN:
                 return f"skin over {many} {numbers} is {thickness}"
             case FaultKind.WALL:

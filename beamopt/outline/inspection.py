@@ -17,7 +17,7 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["contacts", "nearest", "thicknesses", "topology", "worst_first"]
+__all__ = ["TOUCH", "contacts", "nearest", "thicknesses", "topology", "worst_first"]
 
 TOUCH = 0.01
 """mm; what is nearer is not separated by a wall."""
@@ -65,23 +65,29 @@ def thicknesses(
     for supplies, distance, place in _between(regions, below):
         kind = FaultKind.WALL if len(supplies) > 1 else FaultKind.NECK
         faults.append(Fault(kind, distance, place, supplies, rules.wall))
-    if below > 0:
-        for supply, region in zip(SUPPLIES, regions, strict=True):
-            for part in region:
-                faults += _self_necks(supply, part, rules.wall, below)
-    return faults
+    return faults + _self_necks(regions, rules.wall, below)
 
 
-def _self_necks(supply: int, part: Polygon, wall: float, below: float) -> list[Fault]:
-    thin = thin_places(loops_of(part), below, SPACING, FACING)
+def _self_necks(regions: Sequence[Region], wall: float, below: float) -> list[Fault]:
+    """Necks between two walls of the same chamber."""
+    loops = [
+        (supply, part, loop)
+        for supply, region in zip(SUPPLIES, regions, strict=True)
+        for part in region
+        for loop in loops_of(part)
+    ]
+    if below <= 0:
+        return []
+    thin = thin_places([loop for _, _, loop in loops], below, SPACING, FACING)
     faults: list[Fault] = []
     for k in np.argsort(thin.thickness, kind="stable"):
+        (supply, part, _), (_, other, _) = loops[thin.start[k]], loops[thin.hit[k]]
         x, y = (float(value) for value in thin.middle[k])
         apart = all(
             fault.place and np.hypot(x - fault.place[0], y - fault.place[1]) > 2 * wall
             for fault in faults
         )
-        if apart:  # a long thin wall is one fault, at its thinnest
+        if part is other and apart:  # a long thin wall is one fault, at its thinnest
             faults.append(Fault(FaultKind.NECK, float(thin.thickness[k]), (x, y), (supply,), wall))
     return faults
 

@@ -13,6 +13,8 @@ from beamopt.arrays import FloatArray, IndexArray
 __all__ = ["Thin", "thin_places"]
 
 FAN = np.radians(8.0)  # between the rays from a sharp corner
+MOST_RAYS = 30_000  # or nearly; walls of a micrometre would ask for millions
+AROUND = 3.0  # times as long as the ray: no way round a corner of material
 NOTHING = 1e-7  # mm; a hit this near is the ray's own corner
 
 
@@ -33,9 +35,10 @@ def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, oppos
 
     Where two walls come nearest to each other the normal of one meets the other at the distance
     between them, so that rays every `spacing` [mm] and a fan of them at sharp corners find every
-    neck, between two chambers or between two parts of one. Only walls that face each other count:
-    `opposed` is the least cosine between one's normal and the other's, reversed; the two sides of
-    a corner of the material are always near each other.
+    neck, between two chambers or between two parts of one. The two sides of a corner of material
+    are always near each other; so walls of one loop only count when they face each other
+    (`opposed` is the least cosine between one's normal and the other's, reversed) or are far from
+    each other along the loop.
 
     loops : (n, 2) each, closed, material on the left [mm].
     """
@@ -54,6 +57,7 @@ def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, oppos
     )
     along = b - a
     length = np.hypot(*along.T)
+    spacing = max(spacing, length.sum() / MOST_RAYS)
     along /= np.maximum(length, NOTHING**2)[:, None]
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
     origin, ray, source, neighbour = _rays(a, b, length, normal, after, spacing)
@@ -69,8 +73,16 @@ def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, oppos
     k, edge, t = k[order], edge[order], t[order]
     first = np.ones(k.size, dtype=np.bool_)
     first[1:] = k[1:] != k[:-1]
-    first &= (ray[k] * normal[edge]).sum(axis=1) < -opposed
     k, edge, t = k[first], edge[first], t[first]
+    facing = (ray[k] * normal[edge]).sum(axis=1) < -opposed
+    # places along the loops, all in a row, of both ends of each ray
+    before = np.cumsum(length) - length
+    start = before[source[k]] + np.hypot(*(origin[k] - a[source[k]]).T)
+    end = before[edge] + np.hypot(*(origin[k] + t[:, None] * ray[k] - a[edge]).T)
+    total = np.bincount(owner, weights=length)[owner[edge]]
+    way = np.minimum(np.abs(end - start), total - np.abs(end - start))
+    facing |= (owner[source[k]] != owner[edge]) | (way > AROUND * t)
+    k, edge, t = k[facing], edge[facing], t[facing]
     middle = origin[k] + t[:, None] / 2 * ray[k]
     return Thin(t, middle, owner[source[k]], owner[edge])
 
@@ -97,23 +109,18 @@ def _rays(
     edge = np.repeat(np.arange(len(a)), count)
     step = np.arange(edge.size) - np.repeat(np.cumsum(count) - count, count)
     share = ((step + 0.5) / count[edge])[:, None]
-    origins = [a[edge] + share * (b - a)[edge]]
-    rays, sources, neighbours = [normal[edge]], [edge], [edge]
     # at a chamber's convex corner (the material turns right) the normals open into a fan
     m, n = normal, normal[after]
     turn = np.arctan2(m[:, 0] * n[:, 1] - m[:, 1] * n[:, 0], (m * n).sum(axis=1))
-    for corner in np.flatnonzero(turn < -FAN):
-        fans = int(np.ceil(-turn[corner] / FAN))
-        angle = np.arctan2(m[corner, 1], m[corner, 0]) + turn[corner] * np.arange(fans + 1) / fans
-        origins.append(np.repeat(b[corner][None], fans + 1, axis=0))
-        rays.append(np.stack([np.cos(angle), np.sin(angle)], axis=1))
-        sources.append(np.full(fans + 1, corner))
-        neighbours.append(np.full(fans + 1, after[corner]))
+    fan = np.where(turn < 0, np.ceil(-turn / FAN), 0).astype(np.int64)
+    corner = np.repeat(np.arange(len(a)), fan)
+    step = np.arange(corner.size) - np.repeat(np.cumsum(fan) - fan, fan)
+    angle = np.arctan2(m[corner, 1], m[corner, 0]) + turn[corner] * (step + 0.5) / fan[corner]
     return (
-        np.concatenate(origins),
-        np.concatenate(rays),
-        np.concatenate(sources),
-        np.concatenate(neighbours),
+        np.concatenate([a[edge] + share * (b - a)[edge], b[corner]]),
+        np.concatenate([normal[edge], np.stack([np.cos(angle), np.sin(angle)], axis=1)]),
+        np.concatenate([edge, corner]),
+        np.concatenate([edge, after[corner]]),
     )
 
 

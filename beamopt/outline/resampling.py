@@ -16,6 +16,7 @@ SPACING = 0.05  # mm between places where curvature is measured
 WINDOW = 0.3  # mm to either side that it is averaged over
 GRADING = 0.7  # growth of edge length along the loop
 FEWEST = 6  # edges of a loop
+PASSES = 5  # at making edges shorter where chords are too far off
 
 
 def resample(points: FloatArray, sagitta: float, unit: float = 1.0) -> FloatArray:
@@ -34,13 +35,16 @@ def resample(points: FloatArray, sagitta: float, unit: float = 1.0) -> FloatArra
     )
     arc = np.concatenate([[0.0], np.cumsum(length)])
     closed = np.concatenate([dense, dense[:1]])
-    # ∫ ds/h, between whose whole numbers (stretched, from corner to corner) the edges lie
-    inverse = 1 / np.concatenate([size, size[:1]])
-    count = np.concatenate([[0.0], np.cumsum((inverse[1:] + inverse[:-1]) / 2 * length)])
     fixed = np.unique(np.concatenate([[0], np.flatnonzero(corner), [len(dense)]]))
-    least = -(-FEWEST // (len(fixed) - 1))
-    stretches = [(count[i : j + 1], arc[i : j + 1]) for i, j in pairwise(fixed)]
-    at = np.concatenate([_nodes(*stretch, least) for stretch in stretches])
+    for _ in range(PASSES):
+        at = _places(_graded(size, arc), arc, fixed)
+        off, edge = _distances(at, arc, closed)
+        bad = off > sagitta
+        if not bad.any():
+            break
+        # where an edge reaches from an arc into a straight: shorter there, gradually around it
+        shorter = np.where(bad, 0.8 * np.diff(np.append(at, arc[-1])), np.inf)
+        size = np.minimum(size, shorter[edge])
     at = _refined(at, arc, closed, sagitta)
     return np.stack([np.interp(at, arc, closed[:, k]) for k in range(2)], axis=1)
 
@@ -67,7 +71,7 @@ def _dense(
 
 def _sizes(length: FloatArray, turning: FloatArray, sagitta: float, unit: float) -> FloatArray:
     """(n,) edge length that curvature allows at each point [mm]."""
-    n, total = length.size, length.sum()
+    total = length.sum()
     at = np.cumsum(length) - length
     window = min(WINDOW * unit, total / 8)
     # total turning as a function of place, over three rounds so that windows never end
@@ -80,32 +84,56 @@ def _sizes(length: FloatArray, turning: FloatArray, sagitta: float, unit: float)
     with np.errstate(divide="ignore"):
         size = np.sqrt(8 * sagitta / curvature)
     size = np.clip(size, min(SHORTEST * unit, longest), longest)
-    # no point may be larger than any other plus GRADING times the way to it
-    tripled = np.tile(size, 3)
-    up = GRADING * places + np.minimum.accumulate(tripled - GRADING * places)
-    down = np.minimum.accumulate((tripled + GRADING * places)[::-1])[::-1] - GRADING * places
-    return np.minimum(up, down)[n : 2 * n]
+    return np.asarray(size)
 
 
-def _nodes(count: FloatArray, arc: FloatArray, least: int) -> FloatArray:
-    """Places along one stretch, its first end included, its last one not."""
-    edges = max(int(np.ceil(count[-1] - count[0] - 1e-9)), least)
-    return np.interp(np.linspace(count[0], count[-1], edges + 1)[:-1], count, arc)
+def _graded(size: FloatArray, arc: FloatArray) -> FloatArray:
+    """No size larger than any other plus `GRADING` times the way to it."""
+    n = size.size
+    places = np.concatenate([arc[:-1] - arc[-1], arc[:-1], arc[:-1] + arc[-1]])
+    slope, tripled = GRADING * places, np.tile(size, 3)
+    up = slope + np.minimum.accumulate(tripled - slope)
+    down = np.minimum.accumulate((tripled + slope)[::-1])[::-1] - slope
+    return np.asarray(np.minimum(up, down)[n : 2 * n])
+
+
+def _places(size: FloatArray, arc: FloatArray, fixed: IndexArray) -> FloatArray:
+    """Where the nodes lie along the loop: a whole number of edges between corners.
+
+    The k-th node of a stretch lies where ∫ ds/h has reached the k-th part of its end value.
+    """
+    inverse = 1 / np.append(size, size[0])
+    steps = (inverse[1:] + inverse[:-1]) / 2 * np.diff(arc)
+    count = np.concatenate([[0.0], np.cumsum(steps)])
+    least = -(-FEWEST // (len(fixed) - 1))
+    nodes = []
+    for i, j in pairwise(fixed):
+        edges = max(int(np.ceil(count[j] - count[i] - 1e-9)), least)
+        ends = np.linspace(count[i], count[j], edges + 1)[:-1]
+        nodes.append(np.interp(ends, count[i : j + 1], arc[i : j + 1]))
+    return np.concatenate(nodes)
+
+
+def _distances(
+    at: FloatArray, arc: FloatArray, closed: FloatArray
+) -> tuple[FloatArray, IndexArray]:
+    """How far the loop is from each chord, and the chord of each of its points."""
+    x, y = (np.interp(at, arc, closed[:, k]) for k in range(2))
+    edge = np.searchsorted(at, arc[:-1], side="right") - 1
+    dx, dy = np.roll(x, -1) - x, np.roll(y, -1) - y
+    u, v = closed[:-1, 0] - x[edge], closed[:-1, 1] - y[edge]
+    off = np.abs(dx[edge] * v - dy[edge] * u) / np.maximum(np.hypot(dx, dy)[edge], 1e-300)
+    worst = np.zeros(at.size)
+    np.maximum.at(worst, edge, off)
+    return worst, edge
 
 
 def _refined(at: FloatArray, arc: FloatArray, closed: FloatArray, sagitta: float) -> FloatArray:
-    """Nodes added where the loop is still more than `sagitta` from its chord."""
+    """Edges halved where the loop is still more than `sagitta` from its chord."""
     for _ in range(8):
-        x, y = (np.interp(at, arc, closed[:, k]) for k in range(2))
-        edge = np.searchsorted(at, arc[:-1], side="right") - 1
-        dx, dy = np.roll(x, -1) - x, np.roll(y, -1) - y
-        u, v = closed[:-1, 0] - x[edge], closed[:-1, 1] - y[edge]
-        off = np.abs(dx[edge] * v - dy[edge] * u) / np.maximum(np.hypot(dx, dy)[edge], 1e-300)
-        worst = np.zeros(at.size)
-        np.maximum.at(worst, edge, off)
-        bad = np.flatnonzero(worst > 1.05 * sagitta)
+        bad = np.flatnonzero(_distances(at, arc, closed)[0] > 1.05 * sagitta)
         if not bad.size:
             break
-        places = [arc[:-1][edge == k][np.argmax(off[edge == k])] for k in bad]
-        at = np.unique(np.concatenate([at, places]))
+        ends = np.append(at, arc[-1])
+        at = np.unique(np.concatenate([at, (ends[bad] + ends[bad + 1]) / 2]))
     return at
