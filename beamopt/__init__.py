@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from beamopt.section.cross_section import CrossSection
     from beamopt.section.feature_points import FeaturePoints
     from beamopt.section.grid import PolarGrid
+    from beamopt.section.seal import SealRules
     from beamopt.study.plan import Plan
     from beamopt.study.run import run_study
     from beamopt.target import Target
@@ -50,6 +51,7 @@ _HOMES = {
     "beamopt.section.cross_section": ("CrossSection",),
     "beamopt.section.feature_points": ("FeaturePoints",),
     "beamopt.section.grid": ("PolarGrid",),
+    "beamopt.section.seal": ("SealRules",),
     "beamopt.study.plan": ("Plan",),
     "beamopt.study.run": ("run_study",),
     "beamopt.target": ("Target",),
@@ -70,6 +72,7 @@ __all__ = [
     "PolarGrid",
     "Response",
     "Scene",
+    "SealRules",
     "Status",
     "StopReason",
     "Target",

@@ -16,6 +16,7 @@ from beamopt.files import json_text, write_atomic
 from beamopt.model import Count, Model, Number, parse, quantity, read_json
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import LinearResponse, linear_response
+from beamopt.seal import Seal
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
@@ -133,22 +134,6 @@ WallElements = Annotated[int, Field(strict=True), AfterValidator(_even)]
 """Elements of a wall between chambers of different supplies."""
 
 
-class Seal(Model):
-    """Skin and walls in mm; this version builds unsealed sections only."""
-
-    skin: Number = quantity(0.0, "skin on the ring's surfaces (0: unsealed)", unit="mm")
-    wall: Number = quantity(0.0, "least wall between chambers", unit="mm")
-    islands: Literal["keep", "remove"] = quantity("keep", "what happens to islands of material")
-
-    @model_validator(mode="after")
-    def _is_unsealed(self) -> Seal:
-        if self.skin != 0 or self.wall != 0 or self.islands != "keep":
-            raise ValueError(
-                'skin 0, wall 0, islands "keep": this version builds no sealed section'
-            )
-        return self
-
-
 class Design(Model):
     """A section, the actuator that it is extruded to, and its pressure levels.
 
@@ -162,15 +147,16 @@ class Design(Model):
     wall_elements: WallElements = quantity(
         ..., "elements of a wall between supplies, even", low=0, high=64
     )
-    seal: Seal = quantity(..., "skin, wall, islands")
+    seal: Seal = quantity(..., "skin, wall, islands; also rounding, smallest_chamber")
     actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
     pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
     notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
 
     @model_validator(mode="after")
-    def _one_section(self) -> Design:
+    def _is_one_section(self) -> Design:
         if (self.feature_points is None) == (self.drawing is None):
             raise ValueError("exactly one of feature_points and drawing must be given")
+        self.seal.check_fits(self.grid.build())
         return self
 
     @classmethod
@@ -182,6 +168,7 @@ class Design(Model):
         wall_elements: int,
         actuator: Actuator,
         levels: tuple[float, float, float],
+        seal: Seal | None = None,
         notes: Mapping[str, Any] | None = None,
     ) -> Design:
         """The design whose section is the Voronoi section of `points`."""
@@ -192,7 +179,7 @@ class Design(Model):
                 x=points.x.tolist(), y=points.y.tolist(), type=points.type.tolist()
             ),
             wall_elements=wall_elements,
-            seal=Seal(),
+            seal=seal or Seal(),
             actuator=actuator,
             pressures=levels,
             notes=dict(notes or {}),
@@ -201,13 +188,12 @@ class Design(Model):
     @cached_property
     def section(self) -> CrossSection:
         """The section, rebuilt from its feature points or its drawing."""
-        grid = self.grid.build()
+        grid, walls, rules = self.grid.build(), self.wall_elements, self.seal.rules
         if self.feature_points is not None:
-            return CrossSection.from_points(
-                grid, FeaturePoints(**self.feature_points.model_dump()), self.wall_elements
-            )
+            points = FeaturePoints(**self.feature_points.model_dump())
+            return CrossSection.from_points(grid, points, walls, rules)
         shapes = [chamber.build() for chamber in self.drawing or []]
-        return CrossSection.from_drawing(grid, shapes, self.wall_elements)
+        return CrossSection.from_drawing(grid, shapes, walls, rules)
 
     @cached_property
     def response(self) -> LinearResponse:
@@ -233,7 +219,8 @@ class Design(Model):
 
     def json(self) -> str:  # type: ignore[override]  # pydantic's own `json` is deprecated
         """The design file's text."""
-        return json_text(self.model_dump(by_alias=True, exclude_none=True))
+        data = self.model_dump(by_alias=True, exclude_none=True)
+        return json_text(data | {"seal": self.seal.written()})
 
     def save(self, path: str | Path) -> Path:
         """Write the design file; a kill never leaves half of it."""

@@ -17,7 +17,8 @@ from beamopt.rod.response import Response
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
-from beamopt.section.phenotype import phenotypes
+from beamopt.section.phenotype import Phenotypes, phenotypes
+from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.workspace import NODES, loss, pressure_grid
 
 __all__ = ["Judge", "Status", "Verdict", "judge_all"]
@@ -62,6 +63,7 @@ class Judge:
     levels : the three pressure levels [kPa].
     target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
     neighbour_weight : λ of the second objective.
+    rules : what a section is sealed by before it is judged.
     """
 
     grid: PolarGrid
@@ -71,6 +73,7 @@ class Judge:
     levels: tuple[float, float, float]
     target: FloatArray
     neighbour_weight: float
+    rules: SealRules = UNSEALED
 
     @cached_property
     def pressures(self) -> FloatArray:
@@ -83,11 +86,11 @@ class Judge:
 
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
         """(n, 27, 3) tips of every candidate [mm]; NaN without material."""
-        return self._tips(phenotypes(self.grid, candidates, self.wall_elements).moments)
+        return self._tips(self._measured(candidates).moments)
 
     def __call__(self, candidates: Sequence[FeaturePoints]) -> list[Verdict]:
         """One verdict a candidate; the same whatever else is in the batch."""
-        measured = phenotypes(self.grid, candidates, self.wall_elements)
+        measured = self._measured(candidates)
         first = loss(self._tips(measured.moments), self.target)
         second = self.neighbour_weight * measured.neighbour_ratio
         rows = zip(candidates, measured.moments.area, measured.moments.is_stiff, strict=True)
@@ -96,6 +99,9 @@ class Judge:
             Verdict(float(L), float(K)) if status is Status.JUDGED else _failed(status)
             for L, K, status in zip(first, second, statuses, strict=True)
         ]
+
+    def _measured(self, candidates: Sequence[FeaturePoints]) -> Phenotypes:
+        return phenotypes(self.grid, candidates, self.wall_elements, self.rules)
 
     def _tips(self, moments: Moments) -> FloatArray:
         response = self.response_of(moments)

@@ -17,6 +17,7 @@ from beamopt.errors import InputError
 from beamopt.judge import Judge
 from beamopt.model import Count, Model, Number, parse, quantity, read_text
 from beamopt.rod.response import linear_response
+from beamopt.seal import Seal
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.target import BaseFrame, Target, oddities, read_target
 from beamopt.workspace import workspace_of
@@ -120,6 +121,7 @@ class Scene(Model):
     actuator: Actuator = Actuator()
     grid: Grid = Grid()
     section: SectionRules = SectionRules()
+    seal: Seal = Seal()
     pressures: Pressures = Pressures()
     target: TargetChoice = TargetChoice()
     search: Search = Search()
@@ -131,6 +133,11 @@ class Scene(Model):
         if not name or any(not (c.isalnum() or c in "-_") for c in name):
             raise ValueError("letters, digits, - and _")
         return name
+
+    @model_validator(mode="after")
+    def _leaves_room(self) -> Scene:
+        self.seal.check_fits(self.grid.build())
+        return self
 
     def load_target(self) -> Target:
         """The target workspace.
@@ -174,6 +181,7 @@ class Scene(Model):
             wall_elements=self.section.wall_elements,
             actuator=self.actuator,
             levels=self.pressures.levels,
+            seal=self.seal,
             notes=notes,
         )
 
@@ -187,6 +195,7 @@ class Scene(Model):
             levels=self.pressures.levels,
             target=target.workspace.tips,
             neighbour_weight=self.search.neighbour_weight,
+            rules=self.seal.rules,
         )
 
 

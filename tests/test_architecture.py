@@ -23,6 +23,7 @@ FLOORS = [
     ],
     ["beamopt.model", "beamopt.folder"],
     ["beamopt.section"],
+    ["beamopt.seal"],
     ["beamopt.outline"],
     ["beamopt.rod"],
     ["beamopt.workspace"],

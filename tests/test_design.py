@@ -10,8 +10,14 @@ from beamopt.bundled import bundled_scenes
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.scene import Scene
+from beamopt.seal import Seal
+from beamopt.section.cross_section import CrossSection
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import PolarGrid
+from beamopt.section.seal import SealRules
 
 DRAWN = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
+SEALED = DRAWN.with_name("sealed_section.json")
 
 
 def test_points_survive_a_file_to_the_last_bit(tmp_path: Path) -> None:
@@ -32,6 +38,56 @@ def test_a_drawing_survives_a_file(tmp_path: Path) -> None:
     kept = json.loads((tmp_path / "design.json").read_text())
     original = json.loads(DRAWN.read_text())
     assert {key: kept[key] for key in original} == original
+
+
+SEAL = {"skin": 1.0, "wall": 0.9, "rounding": 0.5, "smallest_chamber": 3.0, "islands": "remove"}
+
+
+def test_a_sealed_design_survives_a_file(tmp_path: Path) -> None:
+    scene = Scene.model_validate({"seal": SEAL})
+    design = scene.design_of(scene.random_points(np.random.default_rng([3])))
+    read = load_design(design.save(tmp_path / "design.json"))
+    assert read == design
+    assert json.loads(design.json())["seal"] == SEAL
+    rules = SealRules(1.0, 0.9, 0.5, 3.0, True)
+    points = FeaturePoints(**json.loads(design.json())["feature_points"])
+    expected = CrossSection.from_points(PolarGrid(), points, 4, rules).labels
+    np.testing.assert_array_equal(read.section.labels, expected)
+    unsealed = Scene().design_of(points).section.labels
+    assert (unsealed[0] > 0).any()
+    assert not read.section.labels[0].any()
+
+
+def test_a_sealed_drawing_survives_a_file(tmp_path: Path) -> None:
+    design = load_design(SEALED)
+    assert json.loads(SEALED.read_text())["seal"] == SEAL == design.seal.written()
+    read = load_design(design.save(tmp_path / "design.json"))
+    assert read == design
+    np.testing.assert_array_equal(read.section.labels, design.section.labels)
+    assert read.section.pieces.chambers == (1, 1, 1)
+
+
+def test_islands_are_removed_without_a_skin_too() -> None:
+    data = json.loads(DRAWN.read_text())
+    data["seal"] = {"islands": "remove"}
+    data["drawing"] = [{"supply": 1, "r": [12, 24], "phi": [0, 180]}]
+    data["drawing"] += [{"supply": 2, "center": [0, 18], "radius": 2}]
+    kept = Design.model_validate(data | {"seal": {}})
+    removed = Design.model_validate(data)
+    assert kept.section.moments.chamber_areas[1] > 0  # a wall around another supply stays
+    np.testing.assert_array_equal(removed.section.labels, kept.section.labels)
+
+
+def test_an_unsealed_design_names_no_more_keys_than_it_needs() -> None:
+    assert Seal().written() == {"skin": 0.0, "wall": 0.0, "islands": "keep"}
+    assert Seal(skin=1, rounding=0.5).written().keys() == {"skin", "wall", "rounding", "islands"}
+
+
+def test_a_skin_may_fill_all_but_a_little() -> None:
+    Seal(skin=7.4).check_fits(PolarGrid())
+    Seal(skin=24.9).check_fits(PolarGrid(inner_radius=0.0))
+    with pytest.raises(ValueError, match=r"seal\.skin = 25: must be below 25 mm"):
+        Seal(skin=25).check_fits(PolarGrid(inner_radius=0.0))
 
 
 def test_the_fixed_keys_are_there() -> None:
@@ -107,7 +163,14 @@ BAD: list[tuple[str, Any, str]] = [
     ("pressures[1] = 50000", lambda d: d.update(pressures=[0, 50000, 100000]), "2000"),
     ("wall_elements = 3", lambda d: d.update(wall_elements=3), "even"),
     ("wall_elements = '4'", lambda d: d.update(wall_elements="4"), "0 … 64"),
-    ("seal", lambda d: d["seal"].update(skin=1.0), "no sealed section"),
+    ("seal.skin = -1", lambda d: d["seal"].update(skin=-1.0), "0 … 100 mm"),
+    ("seal.skin = 'thick'", lambda d: d["seal"].update(skin="thick"), "must be a number"),
+    ("seal: wall = 0.9", lambda d: d["seal"].update(wall=0.9), "skin above 0"),
+    ("seal: rounding = 0.5", lambda d: d["seal"].update(rounding=0.5), "skin above 0"),
+    ("seal: smallest_chamber = 3", lambda d: d["seal"].update(smallest_chamber=3), "skin above 0"),
+    ("seal.islands = 'melt'", lambda d: d["seal"].update(islands="melt"), "keep, remove"),
+    ("seal.skins = 1", lambda d: d["seal"].update(skins=1), "known here: skin, wall, rounding"),
+    ("seal.skin = 7.5", lambda d: d["seal"].update(skin=7.5), "below 7.5 mm"),
     ("grid", lambda d: d.pop("grid"), "must be given"),
     ("exactly one", lambda d: d.pop("drawing"), "feature_points and drawing"),
     (

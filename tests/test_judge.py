@@ -53,6 +53,29 @@ def test_the_targets_own_section_has_no_loss() -> None:
     assert scene.judge(scene.load_target())([points])[0].L < 1e-18
 
 
+def test_a_sealed_scene_judges_sealed_sections(candidates: list[FeaturePoints]) -> None:
+    scene = load_scene("sealed-section")
+    target = scene.load_target()
+    for points, verdict in zip(candidates, scene.judge(target)(candidates), strict=True):
+        design = scene.design_of(points)
+        assert not design.section.labels[[0, -1]].any()
+        tips = design.workspace.tips
+        assert pytest.approx(loss(tips, target.workspace.tips), rel=1e-12) == verdict.L
+        assert pytest.approx(verdict.K) == JUDGE([points])[0].K  # of the points alone
+
+
+def test_a_sealed_section_without_a_chamber_left_is_judged() -> None:
+    """A chamber too small after sealing leaves a rod that does not move."""
+    scene = load_scene("sealed-section", ["seal.smallest_chamber=1000000"])
+    points = scene.random_points(np.random.default_rng([0]))
+    verdict = scene.judge(TARGET)([points])[0]
+    still = np.tile([0.0, 0.0, 100.0], (27, 1))
+    assert verdict.status is Status.JUDGED
+    assert pytest.approx(loss(still, TARGET.workspace.tips), rel=1e-12) == verdict.L
+    air = FeaturePoints([15.0], [0.0], [2])  # with a skin this is two tubes, no longer nothing
+    assert load_scene("sealed-section").judge(TARGET)([air])[0].status is Status.JUDGED
+
+
 def test_no_feature_point_and_no_material_are_statuses() -> None:
     none = FeaturePoints([], [], [])
     air = FeaturePoints([15.0], [0.0], [2])

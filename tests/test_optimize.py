@@ -82,6 +82,33 @@ def test_interrupted_runs_are_valid_and_go_on(tmp_path: Path) -> None:
     assert content(tmp_path / "run") == content(tmp_path / "whole")
 
 
+def test_a_run_from_before_there_were_seals_goes_on(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    optimize(SCENE, folder, figures=False)
+    before = content(folder)
+    lines = (folder / "scene.toml").read_text().splitlines()
+    first = lines.index("[seal]")
+    (folder / "scene.toml").write_text("\n".join(lines[:first] + lines[first + 6 :]) + "\n")
+    assert "islands" not in (folder / "scene.toml").read_text()
+    optimize(SCENE, folder, resume=True, figures=False)
+    assert content(folder) == before
+
+
+def test_a_sealed_search_goes_on_and_keeps_its_seal(tmp_path: Path) -> None:
+    short = load_scene("sealed-section", ["search.generations=1", "search.population=6"])
+    scene = load_scene("sealed-section", ["search.generations=3", "search.population=6"])
+    optimize(scene, tmp_path / "whole", figures=False)
+    optimize(short, tmp_path / "run", figures=False)
+    optimize(scene, tmp_path / "run", resume=True, figures=False)
+    assert content(tmp_path / "run") == content(tmp_path / "whole")
+    best = load_design(tmp_path / "run" / "best.json")
+    assert best.seal == scene.seal
+    assert not best.section.labels[[0, -1]].any()
+    other = load_scene("sealed-section", ["seal.rounding=0", "search.population=6"])
+    with pytest.raises(InputError, match=r"seal\.rounding = 0\.5"):
+        optimize(other, tmp_path / "run", resume=True)
+
+
 def test_a_run_can_be_made_longer(tmp_path: Path) -> None:
     longer = load_scene("hand-drawn-section", ["search.generations=8"])
     optimize(SCENE, tmp_path / "run", figures=False)
@@ -111,6 +138,7 @@ def test_leftovers_of_a_kill_are_cleared_away(tmp_path: Path) -> None:
         (["grid.stop=350"], "grid.stop = 360"),
         (["grid.radial=64"], "grid.radial = 128"),
         (["search.mutation=weighted"], "search.mutation = 'direct'"),
+        (["seal.skin=1"], "seal.skin = 0"),
     ],
 )
 def test_another_scene_does_not_go_on(overrides: list[str], named: str, tmp_path: Path) -> None:

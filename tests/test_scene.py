@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from beamopt.bundled import bundled_scenes
+from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
@@ -43,7 +44,7 @@ def test_a_written_scene_is_read_as_the_same(tmp_path: Path) -> None:
 
 def test_a_written_scene_names_every_key() -> None:
     text = scene_text(Scene())
-    for table in ("actuator", "grid", "section", "pressures", "target", "search", "stop"):
+    for table in ("actuator", "grid", "section", "seal", "pressures", "target", "search", "stop"):
         assert f"[{table}]" in text
         for key in type(getattr(Scene(), table)).model_fields:
             assert f"\n{key} =" in text or f"\n# {key} =" in text
@@ -75,6 +76,10 @@ BAD = [
     ("[search]\npopulation = 2.5", "search.population = 2.5", "2 … 10000"),
     ("[search]\nmutation = 'wild'", "search.mutation = 'wild'", "direct, weighted"),
     ("[section]\nwall_elements = 5", "section.wall_elements = 5", "even"),
+    ("[seal]\nskin = 101", "seal.skin = 101", "0 … 100 mm"),
+    ("[seal]\nwall = 0.9", "seal", "wall = 0.9: goes with a skin above 0"),
+    ("[seal]\nislands = 'burn'", "seal.islands = 'burn'", "keep, remove"),
+    ("[seal]\nskin = 8", "seal.skin = 8", "must be below 7.5 mm"),
     ("[target]\nkind = 'workspace'", "target", "file must be given"),
     ("[target]\nfile = 'a.csv'", "target", 'goes with kind "section"'),
     ("[target]\nkind='workspace'\nfile='a'\nbase_z=[1,0,0]", "target", "perpendicular"),
@@ -110,3 +115,23 @@ def test_unknown_scenes_and_overrides() -> None:
 def test_another_length_than_the_targets_is_warned_about() -> None:
     target = load_scene("hand-drawn-section", ["actuator.length=90"]).load_target()
     assert "(0, 0, 100) mm" in target.warnings[0]
+
+
+def test_the_random_target_of_a_sealed_scene_is_sealed() -> None:
+    plain = load_scene("random-section").load_target().section
+    sealed = load_scene("random-section", ["seal.skin=1.0", "seal.wall=0.9"]).load_target().section
+    assert plain is not None
+    assert sealed is not None
+    assert plain.labels[[0, -1]].any()
+    assert not sealed.labels[[0, -1]].any()
+    assert (sealed.labels[sealed.labels > 0] == plain.labels[sealed.labels > 0]).mean() > 0.99
+
+
+def test_the_sealed_scene_asks_for_what_moves() -> None:
+    """Its target is a drawing sealed by the scene's own rules, whose tips go a good way."""
+    scene = load_scene("sealed-section")
+    design = load_design(Path(str(scene.target.file)))
+    assert design.seal == scene.seal
+    assert design.section.pieces.islands == 0
+    away = np.linalg.norm(scene.load_target().workspace.tips - (0, 0, 100), axis=1)
+    assert away.max() > 40
