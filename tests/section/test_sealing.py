@@ -267,6 +267,13 @@ def test_walls_of_elements_come_first(seed: int) -> None:
     np.testing.assert_array_equal(skinned.labels, np.where(free, walled.labels, 0))
 
 
+def test_walls_of_elements_come_first_in_drawings_too() -> None:
+    shapes = [RingPiece(1, (13.0, 22.0), (0.3, 60.4)), RingPiece(2, (13.0, 22.0), (60.4, 120.0))]
+    walled = CrossSection.from_drawing(PAPER, shapes, 4)
+    skinned = CrossSection.from_drawing(PAPER, shapes, 4, SealRules(1.0))
+    np.testing.assert_array_equal(skinned.labels, walled.labels)
+
+
 MEASURED = [
     (PAPER, SealRules(1.0), 0.002),
     (PAPER, SealRules(1.0, 0.9), 0.003),
