@@ -16,6 +16,7 @@ SPACING = 0.05  # mm between places where curvature is measured
 WINDOW = 0.3  # mm to either side that it is averaged over
 GRADING = 0.7  # growth of edge length along the loop
 FEWEST = 6  # edges of a loop
+CRUMB = 3.0  # times the sagitta: edges this short are not made shorter
 PASSES = 5  # at making edges shorter where chords are too far off
 
 
@@ -35,15 +36,16 @@ def resample(points: FloatArray, sagitta: float, unit: float = 1.0) -> FloatArra
     )
     arc = np.concatenate([[0.0], np.cumsum(length)])
     closed = np.concatenate([dense, dense[:1]])
-    fixed = np.unique(np.concatenate([[0], np.flatnonzero(corner), [len(dense)]]))
+    fixed = _apart(np.flatnonzero(corner), arc, min(SHORTEST * unit, arc[-1] / FEWEST) / 2)
     for _ in range(PASSES):
         at = _places(_graded(size, arc), arc, fixed)
         off, edge = _distances(at, arc, closed)
-        bad = off > sagitta
+        edges = np.diff(np.append(at, arc[-1]))
+        bad = (off > sagitta) & (edges > CRUMB * sagitta)
         if not bad.any():
             break
         # where an edge reaches from an arc into a straight: shorter there, gradually around it
-        shorter = np.where(bad, 0.8 * np.diff(np.append(at, arc[-1])), np.inf)
+        shorter = np.where(bad, 0.8 * edges, np.inf)
         size = np.minimum(size, shorter[edge])
     at = _refined(at, arc, closed, sagitta)
     return np.stack([np.interp(at, arc, closed[:, k]) for k in range(2)], axis=1)
@@ -85,6 +87,19 @@ def _sizes(length: FloatArray, turning: FloatArray, sagitta: float, unit: float)
         size = np.sqrt(8 * sagitta / curvature)
     size = np.clip(size, min(SHORTEST * unit, longest), longest)
     return np.asarray(size)
+
+
+def _apart(corners: IndexArray, arc: FloatArray, least: float) -> IndexArray:
+    """Both ends of the loop and the corners between that are `least` [mm] from the one before.
+
+    Offsets leave crumbs of a micrometre whose ends look like corners.
+    """
+    end = len(arc) - 1
+    kept = [0]
+    for corner in corners:
+        if arc[corner] - arc[kept[-1]] >= least and arc[end] - arc[corner] >= least:
+            kept.append(int(corner))
+    return np.array([*kept, end])
 
 
 def _graded(size: FloatArray, arc: FloatArray) -> FloatArray:
@@ -131,9 +146,10 @@ def _distances(
 def _refined(at: FloatArray, arc: FloatArray, closed: FloatArray, sagitta: float) -> FloatArray:
     """Edges halved where the loop is still more than `sagitta` from its chord."""
     for _ in range(8):
-        bad = np.flatnonzero(_distances(at, arc, closed)[0] > 1.05 * sagitta)
+        ends = np.append(at, arc[-1])
+        far = _distances(at, arc, closed)[0] > 1.05 * sagitta
+        bad = np.flatnonzero(far & (np.diff(ends) > CRUMB * sagitta))
         if not bad.size:
             break
-        ends = np.append(at, arc[-1])
         at = np.unique(np.concatenate([at, (ends[bad] + ends[bad + 1]) / 2]))
     return at

@@ -35,6 +35,17 @@ def test_two_sharp_corners() -> None:
     assert thinnest(one, two)[0] == pytest.approx(0.5, abs=0.02)
 
 
+def test_two_sharp_corners_of_one_chamber() -> None:
+    """Their sides do not face each other, but are far apart along the loop."""
+    one = shapely.Polygon([(0, 0), (-3, 2), (-3, -2)])
+    two = shapely.Polygon([(0.5, 0), (3.5, -2), (3.5, 2)])
+    frame = [shapely.box(-3.5, -6, -3, 2), shapely.box(3.5, -6, 4, 2), shapely.box(-3.5, -6, 4, -5)]
+    chamber = shapely.union_all([one, two, *frame])
+    found, where = thinnest(chamber)
+    assert found == pytest.approx(0.5, abs=0.02)
+    np.testing.assert_allclose(where, [0.25, 0], atol=0.02)
+
+
 def test_a_neck_within_one_chamber() -> None:
     """A ring that does not quite close, at its ends and nowhere else."""
     ring = shapely.Point(0, 0).buffer(6, quad_segs=64) - shapely.Point(0, 0).buffer(3, quad_segs=64)

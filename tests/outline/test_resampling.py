@@ -64,6 +64,13 @@ def test_corners_stay() -> None:
     assert len(points) == 12
 
 
+def test_crumbs_are_no_corners() -> None:
+    square = np.array(
+        [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [4.0, 9.0], [4.0, 9.0 + 1e-4], [0.0, 9.0]]
+    )
+    assert lengths(resample(square, 0.04)).min() > 0.12
+
+
 def test_small_loops_stay_loops() -> None:
     for radius in (1e-3, 0.02, 0.1):
         points = resample(circle(radius, 1e-6), 0.04)
