@@ -14,6 +14,7 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.model import Count, Model, Number, parse, quantity, read_json
+from beamopt.outline.outline import Outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.seal import Seal
@@ -21,6 +22,7 @@ from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
+from beamopt.section.moments import Moments
 from beamopt.workspace import Workspace, workspace_of
 
 __all__ = ["Actuator", "Design", "Grid", "Levels", "WallElements", "load_design"]
@@ -187,18 +189,35 @@ class Design(Model):
 
     @cached_property
     def section(self) -> CrossSection:
-        """The section, rebuilt from its feature points or its drawing."""
+        """The raster, rebuilt from its feature points or its drawing."""
         grid, walls, rules = self.grid.build(), self.wall_elements, self.seal.rules
+        source = self._source
+        if isinstance(source, FeaturePoints):
+            return CrossSection.from_points(grid, source, walls, rules)
+        return CrossSection.from_drawing(grid, source, walls, rules)
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The section's polygons, sealed where the design is; with what is wrong with them."""
+        from beamopt.outline.build import build_outline
+
+        return build_outline(self.grid.build(), self._source, self.seal.rules)
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Moments of what the section is: the outline of a sealed design, the raster of others."""
+        return self.outline.moments if self.seal.rules.sealed else self.section.moments
+
+    @property
+    def _source(self) -> FeaturePoints | list[Shape]:
         if self.feature_points is not None:
-            points = FeaturePoints(**self.feature_points.model_dump())
-            return CrossSection.from_points(grid, points, walls, rules)
-        shapes = [chamber.build() for chamber in self.drawing or []]
-        return CrossSection.from_drawing(grid, shapes, walls, rules)
+            return FeaturePoints(**self.feature_points.model_dump())
+        return [chamber.build() for chamber in self.drawing or []]
 
     @cached_property
     def response(self) -> LinearResponse:
         """What pressure does to the rod of this section."""
-        return linear_response(self.section.moments, self.actuator.youngs_modulus)
+        return linear_response(self.moments, self.actuator.youngs_modulus)
 
     @cached_property
     def workspace(self) -> Workspace:
@@ -241,6 +260,6 @@ def load_design(path: str | Path) -> Design:
     if schema != SCHEMA:
         raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
     design = parse(Design, data, file)
-    if not design.section.moments.is_stiff:
+    if not design.moments.is_stiff:
         raise InputError(file, "", None, "the section has no material, or too little to bend")
     return design

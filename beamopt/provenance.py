@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -18,10 +19,14 @@ THREAD_SETTINGS = (
 PACKAGES = ("beamopt", "numpy", "scipy", "numba", "pydantic", "matplotlib")
 
 
-def provenance() -> dict[str, object]:
-    """Versions, machine and thread settings of this process."""
+def provenance(packages: Iterable[str] = ()) -> dict[str, object]:
+    """Versions, machine and thread settings of this process.
+
+    packages : whose versions matter beside those that every result depends on.
+    """
+    names = (*PACKAGES, *packages)
     return {
-        "versions": {"python": platform.python_version()} | {p: _version(p) for p in PACKAGES},
+        "versions": {"python": platform.python_version()} | {n: _version(n) for n in names},
         "machine": {
             "system": platform.system(),
             "architecture": platform.machine(),

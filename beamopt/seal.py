@@ -57,6 +57,20 @@ class Seal(Model):
             self.skin, self.wall, self.rounding, self.smallest_chamber, self.islands == "remove"
         )
 
+    def sealed_by(self, skin: float) -> Seal:
+        """These rules with a skin [mm], and what goes with it where nothing is asked for yet.
+
+        Walls of 0.9 and corners of 0.5 of the skin; chambers below 3 mm² are filled, islands of
+        material removed.
+        """
+        return Seal(
+            skin=skin,
+            wall=self.wall or 0.9 * skin,
+            rounding=self.rounding or 0.5 * skin,
+            smallest_chamber=self.smallest_chamber or 3.0,
+            islands="remove",
+        )
+
     def check_fits(self, grid: PolarGrid) -> None:
         """Refuse a skin that leaves nothing of the ring.
 

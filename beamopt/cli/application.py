@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from beamopt.errors import InputError
+from beamopt.cli.endings import finish
 
 __all__ = ["app", "run"]
 
@@ -19,8 +19,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-INTERRUPTED = 130  # exit code, as shells have it
 
 
 def _version(wanted: bool) -> None:
@@ -138,29 +136,4 @@ def init(
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command; returns the exit code."""
-    try:
-        code = app(list(arguments), standalone_mode=False)
-    except InputError as error:
-        return _complain(str(error))
-    except (typer.Abort, KeyboardInterrupt):
-        return _complain("interrupted", INTERRUPTED)
-    except BrokenPipeError:
-        return 0
-    except OSError as error:
-        file = error.filename2 or error.filename
-        place = f"{file}: " if file else ""
-        return _complain(f"{place}{(error.strerror or str(error)).lower()}")
-    except Exception as error:
-        # what the option parser refuses; its exception has no public name that stays
-        if hasattr(error, "format_message"):
-            said = error.format_message()
-            return _complain(said) if said else 2  # help was asked for by giving nothing
-        raise
-    if code == INTERRUPTED:
-        return _complain("interrupted", code)
-    return code if isinstance(code, int) else 0  # what a command gave typer.Exit
-
-
-def _complain(text: str, code: int = 2) -> int:
-    typer.echo("beamopt: " + " ".join(text.split()), err=True)
-    return code
+    return finish(app, "beamopt", arguments)

@@ -60,11 +60,6 @@ class Fault:
     asked: float | None = None
 
     @property
-    def kind(self) -> FaultKind:
-        """What is wrong: the status."""
-        return self.status
-
-    @property
     def severity(self) -> Severity:
         """Notice, violation or fatal."""
         return self.status.severity

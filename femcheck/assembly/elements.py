@@ -142,9 +142,7 @@ def _add_product(B: FloatArray, DB: FloatArray, K: FloatArray) -> None:
         row = K[p]
         b0, b1, b2, b3, b4, b5 = B[0, p], B[1, p], B[2, p], B[3, p], B[4, p], B[5, p]
         for m in range(p, size):
-            row[m] += (
-                b0 * d0[m] + b1 * d1[m] + b2 * d2[m] + b3 * d3[m] + b4 * d4[m] + b5 * d5[m]
-            )
+            row[m] += b0 * d0[m] + b1 * d1[m] + b2 * d2[m] + b3 * d3[m] + b4 * d4[m] + b5 * d5[m]
 
 
 @compiled

@@ -85,13 +85,11 @@ class Reduction:
 
         shape = (self._n, self._plate)
         across = csr_array((data[self._across], self._across_at), shape=shape)
-        upper = csr_array(
-            (data[self._in_plate], self._plate_at), shape=(self._plate, self._plate)
-        )
+        upper = csr_array((data[self._in_plate], self._plate_at), shape=(self._plate, self._plate))
         half = modes.T @ (upper @ modes)
         diagonal = modes.T @ (upper.diagonal()[:, None] * modes)
         out = np.empty(self.indices.size)
         out[self._free_to] = data[self._in_free]
-        out[self._plate_to] = (across @ modes)[self._coupled]
+        out[self._plate_to] = np.asarray(across @ modes)[self._coupled]
         out[self.starts[self._n] :] = (half + half.T - diagonal + plate)[self._corner]
         return UpperMatrix(self.starts, self.indices, out)

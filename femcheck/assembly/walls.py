@@ -42,9 +42,7 @@ def wall_volumes(
                 t0 += c * y[0]
                 t1 += c * y[1]
                 t2 += c * y[2]
-            triple = (
-                p0 * (s1 * t2 - s2 * t1) + p1 * (s2 * t0 - s0 * t2) + p2 * (s0 * t1 - s1 * t0)
-            )
+            triple = p0 * (s1 * t2 - s2 * t1) + p1 * (s2 * t0 - s0 * t2) + p2 * (s0 * t1 - s1 * t0)
             volumes[supply[f] - 1] -= weights[g] * triple / 3
 
 

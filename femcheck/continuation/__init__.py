@@ -1,1 +1,1 @@
-"""Finding equilibria: direct solver, Newton's method, load steps, predictors, and how each ended."""
+"""Finding equilibria: direct solvers, Newton's method, load steps, and how each ended."""

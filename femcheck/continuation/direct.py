@@ -1,4 +1,4 @@
-"""Direct solvers for symmetric indefinite matrices: PARDISO where it installs, SuperLU elsewhere."""
+"""Direct solvers for symmetric indefinite matrices: PARDISO if it installs, else SuperLU."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 
-__all__ = ["DirectSolver", "Pardiso", "SingularMatrix", "SuperLU", "direct_solver"]
+__all__ = ["DirectSolver", "Pardiso", "SingularMatrixError", "SuperLU", "direct_solver"]
 
 
-class SingularMatrix(ArithmeticError):
+class SingularMatrixError(ArithmeticError):
     """The matrix could not be factored, or its solution is not finite."""
 
 
@@ -26,11 +26,11 @@ class DirectSolver(Protocol):
     solve_seconds: float
 
     def factor(self, matrix: UpperMatrix) -> None:
-        """Factor, or raise `SingularMatrix`."""
+        """Factor, or raise `SingularMatrixError`."""
         ...
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Solution of the last factored system; raises `SingularMatrix`."""
+        """Solution of the last factored system; raises `SingularMatrixError`."""
         ...
 
     @property
@@ -69,20 +69,21 @@ class Pardiso:
 
         self._failure = PyPardisoError
         self._solver: Any = PyPardisoSolver(mtype=-2)
-        for place, value in ((1, 1), (2, 2), (8, 2), (10, 8), (11, 1), (13, 1), (21, 1)):
-            # own settings; nested dissection; refinement; pivots of 1e-8, scaling, matching
+        for place, value in ((1, 1), (2, 2), (8, 2), (10, 8), (11, 0), (13, 0), (21, 1)):
+            # own settings; nested dissection; refinement; pivots of 1e-8; no scaling or matching by
+            # values, so that the analysis does not depend on which case comes first
             self._solver.set_iparm(place, value)
         self._analysed: tuple[int, int] | None = None
         self._matrix: Any = None
         self.factor_seconds = self.solve_seconds = 0.0
 
     def factor(self, matrix: UpperMatrix) -> None:
-        """Factor, or raise `SingularMatrix`."""
+        """Factor, or raise `SingularMatrixError`."""
         from scipy.sparse import csr_matrix
 
         began = time.perf_counter()
         if not np.isfinite(matrix.data).all():
-            raise SingularMatrix("the tangent has entries that are not finite")
+            raise SingularMatrixError("the tangent has entries that are not finite")
         pattern = (matrix.size, matrix.indices.size)
         shape = (matrix.size, matrix.size)
         self._matrix = csr_matrix((matrix.data, matrix.indices, matrix.starts), shape=shape)
@@ -91,12 +92,12 @@ class Pardiso:
         self.factor_seconds += time.perf_counter() - began
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Solution of the last factored system; raises `SingularMatrix`."""
+        """Solution of the last factored system; raises `SingularMatrixError`."""
         began = time.perf_counter()
         result = self._call(33, np.asfortranarray(right))
         self.solve_seconds += time.perf_counter() - began
         if not np.isfinite(result).all():
-            raise SingularMatrix("the solution is not finite")
+            raise SingularMatrixError("the solution is not finite")
         return result
 
     def _call(self, phase: int, right: FloatArray) -> FloatArray:
@@ -104,7 +105,7 @@ class Pardiso:
         try:
             return np.asarray(self._solver._call_pardiso(self._matrix, right))
         except self._failure as error:
-            raise SingularMatrix(str(error)) from None
+            raise SingularMatrixError(str(error)) from None
 
     @property
     def negative_eigenvalues(self) -> int | None:
@@ -126,7 +127,7 @@ class SuperLU:
         self.factor_seconds = self.solve_seconds = 0.0
 
     def factor(self, matrix: UpperMatrix) -> None:
-        """Factor, or raise `SingularMatrix`."""
+        """Factor, or raise `SingularMatrixError`."""
         from scipy.sparse.linalg import splu
 
         began = time.perf_counter()
@@ -138,16 +139,16 @@ class SuperLU:
                 options={"SymmetricMode": True},
             )
         except RuntimeError as error:
-            raise SingularMatrix(str(error)) from None
+            raise SingularMatrixError(str(error)) from None
         self.factor_seconds += time.perf_counter() - began
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Solution of the last factored system; raises `SingularMatrix`."""
+        """Solution of the last factored system; raises `SingularMatrixError`."""
         began = time.perf_counter()
         result = np.asarray(self._factors.solve(np.ascontiguousarray(right)))
         self.solve_seconds += time.perf_counter() - began
         if not np.isfinite(result).all():
-            raise SingularMatrix("the solution is not finite")
+            raise SingularMatrixError("the solution is not finite")
         return result
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -27,7 +27,7 @@ class LoadSteps:
     seconds : time limit of a walk [s].
     """
 
-    newton: Newton = Newton()
+    newton: Newton = field(default_factory=Newton)
     smallest: float = 1 / 256
     shrink: float = 0.5
     grow: float = 2.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from femcheck.continuation.direct import DirectSolver, SingularMatrix
+from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.solid.equilibrium import Equilibrium, Forces
 from femcheck.solid.state import State, moved
@@ -55,7 +55,7 @@ class Newton:
                 return Outcome(Status.TIME_OUT, None, statistics=statistics)
             try:
                 step = _direction(problem, state, pressures, forces, solver, statistics)
-            except SingularMatrix:
+            except SingularMatrixError:
                 return Outcome(Status.LINEAR_SOLVER, None, statistics=statistics)
             share = _share(problem, state, pressures, forces, step)
             if share is None:

@@ -64,7 +64,7 @@ class Shapes:
 
 
 def _rigid_motion(flat: FloatArray, now: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Rotation and place of the reference point of the rigid motion nearest to a plane's (Kabsch)."""
+    """Rotation, and place of the reference point, of a plane's nearest rigid motion (Kabsch)."""
     middle, there = flat.mean(axis=0), now.mean(axis=0)
     U, _, Vt = np.linalg.svd((flat - middle).T @ (now - there))
     mirror = np.sign(np.linalg.det(Vt.T @ U.T))

@@ -12,7 +12,7 @@ from femcheck.mesh.extrusion import Extrusion
 from femcheck.solid.elements import ELEMENTS, ElementChoice
 from femcheck.solid.facets import FacetShape, facet_shape
 
-__all__ = ["Body", "discretise"]
+__all__ = ["Body", "discretise", "nodes_at"]
 
 ON_NODE = 1e-6
 """Distance [mm] within which a facet's node is taken for a node of the mesh."""
@@ -34,7 +34,6 @@ class Body:
     wall_supply : (f,) 1…3.
     facet : shape functions of a wall facet.
     base, tip : nodes of the clamped face and of the face that the tip plate holds.
-    corners : (p,) node at each corner of the extrusion.
     """
 
     extrusion: Extrusion
@@ -48,7 +47,6 @@ class Body:
     facet: FacetShape
     base: IndexArray
     tip: IndexArray
-    corners: IndexArray
 
     @cached_property
     def tip_centre(self) -> FloatArray:
@@ -95,8 +93,17 @@ def discretise(extrusion: Extrusion, element: str = "wedge18") -> Body:
         facet=shape,
         base=np.flatnonzero(z < ON_NODE),
         tip=np.flatnonzero(z > length - ON_NODE),
-        corners=_nearest(nodes, extrusion.points),
     )
+
+
+def nodes_at(body: Body, places: FloatArray) -> IndexArray:
+    """(k,) node at each of the places (k, 3) [mm].
+
+    Raises
+    ------
+    ValueError : there is none.
+    """
+    return _nearest(body.nodes, places)
 
 
 def _walls(
@@ -118,6 +125,7 @@ def _nearest(nodes: FloatArray, at: FloatArray) -> IndexArray:
     if len(at) == 0:
         return np.zeros(0, dtype=np.int64)
     distance, index = cKDTree(nodes).query(at)
-    if distance.max() > ON_NODE:
-        raise ValueError(f"no node within {ON_NODE} mm of a facet's: {distance.max():.3g} mm")
+    farthest = float(np.max(distance))
+    if farthest > ON_NODE:
+        raise ValueError(f"no node within {ON_NODE} mm of a facet's: {farthest:.3g} mm")
     return np.asarray(index, dtype=np.int64)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.arrays import IndexArray
 from femcheck.mesh.extrusion import Extrusion
 
 __all__ = ["DEFAULT_ELEMENT", "ELEMENTS", "ElementChoice"]

@@ -1,13 +1,15 @@
 """The potential of the pressurised solid, its forces and its symmetric tangent.
 
-Π(x) = ∫ W(C) dV − Σ P_i V_i(x). V_i is what supply i's walls and the two caps that close its chambers
-enclose; the cap on the clamped face adds nothing (it lies in the plane z = 0), the one at the tip
-is plane because the tip face is a rigid plate. Its first derivative is the follower pressure on the
-walls and the thrust on the caps; its second is symmetric because the cavities are closed.
+Π(x) = ∫ W(C) dV − Σ P_i V_i(x). V_i is what supply i's walls and the two caps that close its
+chambers enclose; the cap on the clamped face adds nothing (it lies in the plane z = 0), the one at
+the tip is plane because the tip face is a rigid plate. Its first derivative is the follower
+pressure on the walls and the thrust on the caps; its second is symmetric because the cavities are
+closed.
 """
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +67,12 @@ class Equilibrium:
         self._reduction = Reduction(self._pattern, self.free.size)
         facet = body.facet
         self._facet = (facet.values, facet.along, facet.across, facet.weights)
+
+    def with_law(self, law: Law) -> Equilibrium:
+        """The same body of another law; they share the pattern of the tangent."""
+        other = copy(self)
+        other.law = law
+        return other
 
     def volumes(self, state: State) -> FloatArray:
         """(3,) volume that each supply's chambers enclose, caps included [mm³]."""

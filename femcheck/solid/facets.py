@@ -40,7 +40,9 @@ def _quadrangle(degree: int) -> FacetShape:
     at, w = (gauss + 1) / 2, weight / 2
     line = np.linspace(0, 1, degree + 1)
     value, slope = _lagrange(line, at)
-    places = np.array([[(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t] for s in line for t in line])
+    places = np.array(
+        [[(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t] for s in line for t in line]
+    )
     return FacetShape(
         places,
         np.einsum("ga,hb->ghab", value, value).reshape(at.size**2, -1),

@@ -1,0 +1,178 @@
+"""One pressure combination of one solid: the unit of work that processes share."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from beamopt.arrays import FloatArray, IndexArray
+from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
+from femcheck.continuation.load_steps import LoadSteps
+from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.shape import Shapes
+from femcheck.material.law import Law
+from femcheck.mesh.extrusion import Extrusion, extrude
+from femcheck.mesh.section_mesh import SectionMesh
+from femcheck.solid.body import Body, discretise, nodes_at
+from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solid.state import State, moved, rest_state
+
+__all__ = ["Case", "CaseResult", "Solid", "rest_slopes", "solve_case", "stopped"]
+
+
+class Shown(NamedTuple):
+    """A mesh to look at, and the node of the solid at each of its corners."""
+
+    extrusion: Extrusion
+    nodes: IndexArray
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """What is discretised, and of which law it is.
+
+    name : for files and tables.
+    section : the triangulated section.
+    heights : planes between layers [mm].
+    element : name of the element.
+    law : the material.
+    solver : "auto", "pardiso" or "superlu".
+    """
+
+    name: str
+    section: SectionMesh
+    heights: FloatArray
+    element: str
+    law: Law
+    solver: str = "auto"
+
+    def body(self) -> Body:
+        """Its discretisation."""
+        return discretise(extrude(self.section, self.heights), self.element)
+
+    def shown(self) -> Shown:
+        """Its corners and the middles of its upright edges, as a finer mesh to look at."""
+        body = self.body()
+        middles = (self.heights[1:] + self.heights[:-1]) / 2
+        finer = extrude(self.section, np.sort(np.concatenate([self.heights, middles])))
+        return Shown(finer, nodes_at(body, finer.points))
+
+    @cached_property
+    def digest(self) -> str:
+        """Tells discretisations apart; solids of the same mesh and other laws share it."""
+        state = hashlib.blake2b(f"{self.element} {self.solver}".encode(), digest_size=16)
+        section = self.section
+        for array in (section.points, section.triangles, section.edges, section.supply):
+            state.update(np.ascontiguousarray(array).tobytes())
+        state.update(self.heights.tobytes())
+        return state.hexdigest()
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A pressure combination to be solved.
+
+    guess : shape to try first; None starts from `start`.
+    start : an equilibrium and its pressures; None is the unloaded body.
+    seconds : time limit [s].
+    """
+
+    solid: Solid
+    pressures: FloatArray
+    guess: FloatArray | None
+    start: tuple[State, FloatArray] | None
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class CaseResult:
+    """How a case ended.
+
+    shape : of the equilibrium, to predict others from; None unless converged.
+    volumes : (3,) of the chambers [mm³]. strain_energy : ∫ W dV [mN mm].
+    """
+
+    outcome: Outcome
+    shape: FloatArray | None = None
+    volumes: FloatArray | None = None
+    strain_energy: float = float("nan")
+
+    @property
+    def status(self) -> Status:
+        """How it ended."""
+        return self.outcome.status
+
+
+@dataclass(frozen=True, eq=False)
+class _Workshop:
+    """What one process keeps of a solid between cases."""
+
+    problem: Equilibrium
+    shapes: Shapes
+    solver: DirectSolver
+
+
+_WORKSHOPS: dict[str, _Workshop] = {}
+MOST_WORKSHOPS = 2  # factors are large; a check goes back and forth between two meshes at most
+
+
+def _workshop(solid: Solid) -> _Workshop:
+    """Built once a process and a mesh; laws of one mesh share the pattern and its analysis."""
+    kept = _WORKSHOPS.get(solid.digest)
+    if kept is None:
+        while len(_WORKSHOPS) >= MOST_WORKSHOPS:
+            _WORKSHOPS.pop(next(iter(_WORKSHOPS)))
+        body = solid.body()
+        kept = _Workshop(Equilibrium(body, solid.law), Shapes(body), direct_solver(solid.solver))
+        _WORKSHOPS[solid.digest] = kept
+    return replace(kept, problem=kept.problem.with_law(solid.law))
+
+
+def solve_case(case: Case) -> CaseResult:
+    """Find the equilibrium; whatever happens, a result with a status."""
+    shop = _workshop(case.solid)
+    start = case.start or (rest_state(shop.problem.body), np.zeros(3))
+    guess = None if case.guess is None else shop.shapes.state(case.guess)
+    steps = LoadSteps(seconds=case.seconds)
+    outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
+    if outcome.state is None:
+        return CaseResult(outcome)
+    return CaseResult(
+        outcome,
+        shop.shapes.of(outcome.state),
+        shop.problem.volumes(outcome.state),
+        shop.problem.strain_energy(outcome.state),
+    )
+
+
+def rest_slopes(solid: Solid) -> FloatArray | None:
+    """(3, m) change of the unloaded body's shape with each supply's pressure [1/kPa].
+
+    None where the tangent at rest is singular.
+    """
+    shop = _workshop(solid)
+    problem, rest = shop.problem, rest_state(shop.problem.body)
+    nothing = np.zeros(3)
+    try:
+        shop.solver.factor(problem.tangent(rest, nothing, problem.forces(rest, nothing)))
+        steps = [shop.solver.solve(problem.volume_gradient(rest, k)) for k in (1, 2, 3)]
+    except SingularMatrixError:
+        return None
+    undeformed = shop.shapes.of(rest)
+    slopes = []
+    for step in steps:
+        small = 1e-4 / max(float(np.abs(step).max()), 1e-12)  # mm of the largest displacement
+        near = moved(
+            problem.body, rest, problem.free, small * step[:-6].reshape(-1, 3), small * step[-6:]
+        )
+        slopes.append((shop.shapes.of(near) - undeformed) / small)
+    return np.stack(slopes)
+
+
+def stopped() -> CaseResult:
+    """The result of a case whose process ended under it."""
+    return CaseResult(Outcome(Status.STOPPED, None, statistics=Statistics()))

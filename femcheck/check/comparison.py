@@ -1,0 +1,165 @@
+"""Beam and solid side by side at 27 pressures, and what their difference is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.arrays import FloatArray
+from beamopt.workspace import NODES, node_index
+from femcheck.check.case import CaseResult
+from femcheck.check.schedule import Key
+from femcheck.check.stage import Stage
+from femcheck.check.subject import Subject
+from femcheck.continuation.outcome import Status
+from femcheck.continuation.pressure_tree import all_nodes
+
+__all__ = ["Comparison", "Tips", "compare"]
+
+SMALLEST_DISPLACEMENT = 1e-3  # of the length: below it a share of the displacement says nothing
+ORDER = 4.0  # of the tip with quadratic elements along the axis: twice that of the strains
+
+
+@dataclass(frozen=True, eq=False)
+class Tips:
+    """Tips of one solid, or extrapolated from several.
+
+    mesh : "coarse" or "standard". penalty : c; infinite where extrapolated.
+    tips : (27, 3) [mm] in the order of `pressure_grid`; NaN without an answer.
+    volume_ratios : (27, 3) of each supply's chambers to their undeformed volume; NaN without any.
+    statuses : (27,) how each case ended.
+    """
+
+    mesh: str
+    penalty: float
+    tips: FloatArray
+    volume_ratios: FloatArray
+    statuses: tuple[Status, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """The beam's tips against the solid's.
+
+    solids : what was computed, and extrapolated.
+    refinement : layers of the standard mesh over those of the coarse one.
+    """
+
+    subject: Subject
+    solids: tuple[Tips, ...]
+    refinement: float
+
+    def solid(self, mesh: str, penalty: float) -> Tips:
+        """One of the solids."""
+        return next(one for one in self.solids if (one.mesh, one.penalty) == (mesh, penalty))
+
+    @cached_property
+    def final(self) -> Tips:
+        """The standard mesh, extrapolated in 1/c: what the beam is judged against."""
+        return self.solid("standard", np.inf)
+
+    @property
+    def displacement(self) -> FloatArray:
+        """(27,) of the beam's tip [mm]."""
+        straight = np.array([0, 0, self.subject.design.actuator.length])
+        return np.asarray(np.linalg.norm(self.subject.beam_tips - straight, axis=1))
+
+    @property
+    def difference(self) -> FloatArray:
+        """(27,) between the beam's tip and the solid's [mm]; NaN without an answer."""
+        return np.asarray(np.linalg.norm(self.final.tips - self.subject.beam_tips, axis=1))
+
+    @property
+    def is_loaded(self) -> NDArray[np.bool_]:
+        """(27,) whether any supply has pressure."""
+        return np.asarray(self.subject.pressures.any(axis=1))
+
+    @property
+    def share(self) -> FloatArray:
+        """(27,) difference over displacement.
+
+        Where the tip hardly moves, over a thousandth of the length.
+        """
+        least = SMALLEST_DISPLACEMENT * self.subject.design.actuator.length
+        return np.asarray(self.difference / np.maximum(self.displacement, least))
+
+    @property
+    def discretisation(self) -> FloatArray:
+        """(27,) estimated error of the standard mesh [mm], from what the coarse one differs by.
+
+        With r times the layers an error of order p leaves 1/(rᵖ − 1) of the difference; p = 4.
+        """
+        coarse = self.solid("coarse", np.inf)
+        change = np.linalg.norm(self.final.tips - coarse.tips, axis=1)
+        return np.asarray(change / (self.refinement**ORDER - 1))
+
+    @property
+    def penalty_error(self) -> FloatArray:
+        """(27,) what the finite penalty still moved the tip of the stiffest solid by [mm]."""
+        stiffest = max(one.penalty for one in self.solids if np.isfinite(one.penalty))
+        change = self.final.tips - self.solid("standard", stiffest).tips
+        return np.asarray(np.linalg.norm(change, axis=1))
+
+    @property
+    def unanswered(self) -> int:
+        """Loaded cases of the standard mesh that did not converge."""
+        failed = np.isnan(self.difference) & self.is_loaded
+        return int(failed.sum())
+
+    @property
+    def worst(self) -> float:
+        """Largest share over the loaded cases with an answer; NaN without any."""
+        shares = self._answered()
+        return float(shares.max()) if shares.size else float("nan")
+
+    @property
+    def median(self) -> float:
+        """Median share over the loaded cases with an answer; NaN without any."""
+        shares = self._answered()
+        return float(np.median(shares)) if shares.size else float("nan")
+
+    def _answered(self) -> FloatArray:
+        return np.asarray(self.share[self.is_loaded & ~np.isnan(self.share)])
+
+
+def compare(
+    subject: Subject, stages: Sequence[Stage], results: Mapping[Key, CaseResult]
+) -> Comparison:
+    """Put the results of all stages beside the beam, and extrapolate them in 1/c."""
+    solids = [_tips(subject, stage, results) for stage in stages]
+    for mesh in dict.fromkeys(stage.mesh for stage in stages):
+        low, high = sorted((one for one in solids if one.mesh == mesh), key=lambda one: one.penalty)
+        solids.append(_extrapolated(low, high))
+    layers = {stage.mesh: stage.solid.heights.size - 1 for stage in stages}
+    return Comparison(subject, tuple(solids), layers["standard"] / layers["coarse"])
+
+
+def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:
+    tips, ratios = np.full((NODES, 3), np.nan), np.full((NODES, 3), np.nan)
+    statuses = [Status.STOPPED] * NODES
+    centroid = np.append(stage.solid.section.moments.centroid, 0.0)
+    undeformed = stage.solid.section.moments.chamber_areas * subject.design.actuator.length
+    for node in all_nodes():
+        result, row = results[stage.name, node], node_index(*node)
+        statuses[row] = result.status
+        if result.outcome.state is not None and result.volumes is not None:
+            tips[row] = result.outcome.state.tip - centroid
+            with np.errstate(invalid="ignore", divide="ignore"):
+                ratios[row] = np.where(undeformed > 0, result.volumes / undeformed, np.nan)
+    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses))
+
+
+def _extrapolated(low: Tips, high: Tips) -> Tips:
+    """Linear in 1/c to 0; a case without an answer in either has none."""
+    ratio = 1 / (high.penalty / low.penalty - 1)
+    tips = high.tips + ratio * (high.tips - low.tips)
+    volumes = high.volume_ratios + ratio * (high.volume_ratios - low.volume_ratios)
+    worse = [
+        first if first is not Status.CONVERGED else second
+        for first, second in zip(low.statuses, high.statuses, strict=True)
+    ]
+    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse))

@@ -1,0 +1,158 @@
+"""All cases of all stages, each as soon as what predicts it is known, on any executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from femcheck.check.case import Case, CaseResult, rest_slopes, solve_case, stopped
+from femcheck.check.stage import Stage
+from femcheck.continuation.pressure_tree import Node, all_nodes, ancestors, prediction
+from femcheck.solid.state import State
+
+__all__ = ["Key", "Schedule", "solve_all"]
+
+Key = tuple[str, Node]
+"""A case: the name of its stage, and its node of the pressure tree."""
+
+
+@dataclass
+class Schedule:
+    """What is known and what is to be done; guesses depend on nothing but the tree.
+
+    Parameters
+    ----------
+    stages : in the order in which they are begun.
+    levels : three pressure levels [kPa].
+    seconds : time limit of a case [s].
+    results : of the cases that are done.
+    slopes : of the stages' shapes at rest.
+    """
+
+    stages: Sequence[Stage]
+    levels: tuple[float, float, float]
+    seconds: float
+    results: dict[Key, CaseResult] = field(default_factory=dict)
+    slopes: dict[str, FloatArray | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._stage = {stage.name: stage for stage in self.stages}
+        self.keys = [(stage.name, node) for stage in self.stages for node in all_nodes()]
+
+    def pressures(self, node: Node) -> FloatArray:
+        """(3,) [kPa]."""
+        return np.array([self.levels[index] for index in node])
+
+    def is_ready(self, key: Key) -> bool:
+        """Whether everything that predicts a case is known."""
+        name, node = key
+        follows = self._stage[name].follows
+        if follows is not None and (follows, node) not in self.results:
+            return False
+        needed = [source for _, source in prediction(node, self.levels)]
+        return all(
+            name in self.slopes if isinstance(source, int) else (name, source) in self.results
+            for source in needed
+        )
+
+    def case(self, key: Key) -> Case:
+        """The case with its guess and its start."""
+        name, node = key
+        solid = self._stage[name].solid
+        return Case(solid, self.pressures(node), self._guess(key), self._start(key), self.seconds)
+
+    def _start(self, key: Key) -> tuple[State, FloatArray] | None:
+        """The nearest equilibrium on the way back to the first node."""
+        name, node = key
+        for ancestor in ancestors(node):
+            found = self.results.get((name, ancestor))
+            if found is not None and found.outcome.state is not None:
+                return found.outcome.state, self.pressures(ancestor)
+        return None
+
+    def _guess(self, key: Key) -> FloatArray | None:
+        name, node = key
+        own = self._predicted(name, node)
+        follows = self._stage[name].follows
+        if follows is None:
+            return own
+        before = self.results[follows, node].shape
+        if before is None or own is None:
+            return own if before is None else before
+        foretold = self._predicted(follows, node)
+        return before if foretold is None else before + (own - foretold)
+
+    def _predicted(self, name: str, node: Node) -> FloatArray | None:
+        """The sum of the prediction's terms; None where one of them is missing."""
+        total: Any = 0.0
+        for factor, source in prediction(node, self.levels):
+            if isinstance(source, int):
+                slopes = self.slopes.get(name)
+                term = None if slopes is None else slopes[source - 1]
+            else:
+                term = self.results[name, source].shape
+            if term is None:
+                return None
+            total = total + factor * term
+        return np.asarray(total)
+
+
+def solve_all(
+    schedule: Schedule,
+    pool: Callable[[], AbstractContextManager[Executor]],
+    workers: int,
+    keep: Callable[[Key, CaseResult], None],
+) -> None:
+    """Solve what is not in `schedule.results` yet, `workers` cases at once.
+
+    A process that dies under a case gives it the status `STOPPED`; the others go on in a new pool.
+
+    pool : makes the executor. keep : is called with every result as it comes, in any order.
+    """
+    waiting = [key for key in schedule.keys if key not in schedule.results]
+    while waiting:
+        lost: set[Key] = set()
+        with pool() as executor:
+            lost = _until_broken(schedule, waiting, executor, workers, keep)
+        for key in sorted(lost):
+            schedule.results[key] = stopped()
+            keep(key, schedule.results[key])
+        waiting = [key for key in waiting if key not in schedule.results]
+
+
+def _until_broken(
+    schedule: Schedule,
+    waiting: Sequence[Key],
+    executor: Executor,
+    workers: int,
+    keep: Callable[[Key, CaseResult], None],
+) -> set[Key]:
+    """Go on until all is done, or a process died; then return what was under way."""
+    for stage in schedule.stages:
+        if stage.name not in schedule.slopes and any(key[0] == stage.name for key in waiting):
+            schedule.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
+    running: dict[Future[CaseResult], Key] = {}
+    left = list(waiting)
+    while left or running:
+        for key in [key for key in left if schedule.is_ready(key)]:
+            if len(running) >= workers:
+                break
+            running[executor.submit(solve_case, schedule.case(key))] = key
+            left.remove(key)
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            key = running.pop(future)
+            try:
+                result = future.result()
+            except BrokenProcessPool:
+                return {key, *running.values()}
+            schedule.results[key] = result
+            keep(key, result)
+    return set()

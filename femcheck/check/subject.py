@@ -1,0 +1,142 @@
+"""The section that beam and solid are both made of, and how it came to be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.design import Design
+from beamopt.outline.faults import Fault, FaultKind, Severity
+from beamopt.outline.outline import Outline
+from beamopt.rod.arc import arc_tips
+from beamopt.rod.response import LinearResponse, linear_response
+from beamopt.section.moments import Moments
+from beamopt.workspace import pressure_grid
+from femcheck.mesh.section_mesh import SectionMesh
+
+__all__ = [
+    "GeometrySteps",
+    "Subject",
+    "UnsealedDesignError",
+    "check_sealed",
+    "geometry_steps",
+    "sealed_copy",
+]
+
+
+class UnsealedDesignError(ValueError):
+    """A design whose chambers are open: no solid can be made of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A design to be checked.
+
+    name : of its folder and in tables.
+    design : as it is checked, sealed if it was asked for.
+    sealing_moved : (27,) how far sealing a copy moved the beam's tips [mm]; None where the design
+        was taken as it is.
+    """
+
+    name: str
+    design: Design
+    sealing_moved: FloatArray | None = None
+
+    @property
+    def outline(self) -> Outline:
+        """The polygons that the section is."""
+        return self.design.outline
+
+    @cached_property
+    def pressures(self) -> FloatArray:
+        """(27, 3) [kPa]."""
+        return pressure_grid(self.design.pressures)
+
+    @cached_property
+    def response(self) -> LinearResponse:
+        """Of the beam on the outline's exact moments."""
+        return linear_response(self.outline.moments, self.design.actuator.youngs_modulus)
+
+    @cached_property
+    def beam_tips(self) -> FloatArray:
+        """(27, 3) [mm], the base's material centroid at the origin."""
+        return self.tips_of(self.outline.moments)
+
+    def tips_of(self, moments: Moments) -> FloatArray:
+        """(27, 3) tips [mm] of the beam on any view of the section."""
+        actuator = self.design.actuator
+        response = linear_response(moments, actuator.youngs_modulus)
+        return arc_tips(response.strains(self.pressures), actuator.length)
+
+    @property
+    def largest_turn(self) -> float:
+        """Largest angle between the beam's tip and its base [rad]."""
+        strains = self.response.strains(self.pressures)
+        return float(np.hypot(strains[:, 1], strains[:, 2]).max() * self.design.actuator.length)
+
+    @property
+    def fatal(self) -> Fault | None:
+        """Why no solid can be made of it."""
+        return next((f for f in self.outline.faults if f.severity is Severity.FATAL), None)
+
+    @property
+    def has_islands(self) -> bool:
+        """Whether material hangs in a chamber: the beam is not the solid's limit then."""
+        return bool(self.outline.islands)
+
+
+@dataclass(frozen=True, slots=True)
+class GeometrySteps:
+    """Worst tip differences of the beam between one view of the section and the next [mm]."""
+
+    raster_to_smooth: float
+    smooth_to_outline: float
+    outline_to_mesh: float
+
+    @property
+    def raster_to_outline(self) -> float:
+        """At most the first two together [mm]."""
+        return self.raster_to_smooth + self.smooth_to_outline
+
+
+def geometry_steps(subject: Subject, mesh: SectionMesh) -> GeometrySteps:
+    """How far the tips move from raster to smooth outline, to its polygons, to the mesh."""
+    views = subject.outline.views(subject.design.section.moments)
+    tips = [subject.tips_of(moments) for moments in (*views, mesh.moments)]
+    raster, smooth, outline = (
+        float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(tips)
+    )
+    return GeometrySteps(raster, smooth, outline)
+
+
+def sealed_copy(name: str, design: Design, skin: float) -> Subject:
+    """A copy of a design sealed by a skin [mm] and walls nearly as thick, and what that moved.
+
+    Raises
+    ------
+    ValueError : a skin that leaves nothing of the ring.
+    """
+    seal = design.seal.sealed_by(skin)
+    sealed = design.model_copy(update={"seal": seal})
+    sealed = Design.model_validate(sealed.model_dump(by_alias=True, exclude_none=True))
+    moved = np.linalg.norm(sealed.workspace.tips - design.workspace.tips, axis=1)
+    return Subject(name, sealed, moved)
+
+
+def check_sealed(name: str, design: Design) -> None:
+    """Refuse a design whose chambers are open.
+
+    Raises
+    ------
+    UnsealedDesignError : the chamber, and the way out.
+    """
+    opened = [f for f in design.outline.faults if f.status is FaultKind.UNSEALED]
+    if opened:
+        raise UnsealedDesignError(
+            f"{name} is not sealed: {opened[0]}; --seal 1.0 seals a copy by a skin of 1 mm and "
+            "says how far that moves the tips"
+        )

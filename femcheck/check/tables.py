@@ -1,0 +1,217 @@
+"""A check as tables: every tip, one line a pressure combination, and the verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamopt.files import csv_text
+from femcheck.check.comparison import Comparison
+from femcheck.continuation.outcome import Status
+
+if TYPE_CHECKING:
+    from femcheck.check.run import Checked
+
+__all__ = ["compare_csv", "summary", "table_csv", "timing_csv", "verdict"]
+
+DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
+
+COMPARE = (
+    "law,c,nu,mesh,p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,"
+    "difference_of_length,difference_of_displacement,"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+)
+TABLE = (
+    "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
+    "difference_of_displacement,discretisation_mm,penalty_mm,"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+)
+
+
+def compare_csv(checked: Checked) -> str:
+    """27 rows for every solid, computed (c finite) and extrapolated (c infinite)."""
+    compared = checked.comparison
+    assert compared is not None
+    return csv_text(COMPARE, _compare_rows(compared, checked.options.law))
+
+
+def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]]:
+    subject = compared.subject
+    length = subject.design.actuator.length
+    beam, displacement = subject.beam_tips, compared.displacement
+    for solid in compared.solids:
+        difference = np.linalg.norm(solid.tips - beam, axis=1)
+        for row, pressures in enumerate(subject.pressures.tolist()):
+            moved = displacement[row]
+            yield (
+                law,
+                _plain(solid.penalty),
+                0.0,  # the law has no Poisson coupling
+                solid.mesh,
+                *map(_plain, pressures),
+                *_cells(beam[row]),
+                *_cells(solid.tips[row]),
+                *_cells([difference[row], difference[row] / length]),
+                *_cells([difference[row] / moved if moved > 0 else math.nan]),
+                *_cells(solid.volume_ratios[row]),
+                solid.statuses[row].value,
+            )
+
+
+def table_csv(compared: Comparison) -> str:
+    """27 rows: beam, solid, difference and what it is made of."""
+    subject = compared.subject
+    length = subject.design.actuator.length
+    columns = np.column_stack(
+        [
+            subject.beam_tips,
+            compared.final.tips,
+            compared.difference,
+            compared.difference / length,
+            np.where(compared.displacement > 0, compared.share, np.nan),
+            compared.discretisation,
+            compared.penalty_error,
+            compared.final.volume_ratios,
+        ]
+    )
+    pressures = subject.pressures.tolist()
+    rows = zip(pressures, columns, compared.final.statuses, strict=True)
+    return csv_text(
+        TABLE, [(*map(_plain, at), *_cells(row), status.value) for at, row, status in rows]
+    )
+
+
+def _plain(value: float) -> object:
+    """Whole numbers without a point, infinity as inf."""
+    return int(value) if float(value).is_integer() else value
+
+
+def _cells(values: Any) -> list[object]:
+    """Rounded, so that the last bits of a solver do not show; empty where there is no answer."""
+    rounded = [round(float(value), DIGITS) + 0.0 for value in values]
+    return [None if math.isnan(value) else value for value in rounded]
+
+
+def verdict(checked: Checked) -> str:
+    """One sentence on whether the solid converges to the beam."""
+    if checked.failure is not None:
+        return f"no answer: {checked.failure}"
+    compared = checked.comparison
+    assert compared is not None
+    agree = f"{100 * checked.options.agree:g} %"
+    if compared.unanswered:
+        first = next(
+            status
+            for status, loaded in zip(compared.final.statuses, compared.is_loaded, strict=True)
+            if loaded and status is not Status.CONVERGED
+        )
+        return f"no answer in {compared.unanswered} of {_loaded(compared)} cases: {first.value}"
+    worst, median = (f"{100 * value:.3g} %" for value in (compared.worst, compared.median))
+    said = f"worst {worst}, median {median} of the tip's displacement"
+    if checked.holds:
+        return f"the solid converges to the beam: {said} (asked {agree})"
+    return f"the solid does not agree with the beam within {agree}: {said}"
+
+
+def _loaded(compared: Comparison) -> int:
+    return int(compared.is_loaded.sum())
+
+
+def summary(checked: Checked) -> dict[str, Any]:
+    """The check without times."""
+    subject, options = checked.subject, checked.options
+    outline = subject.outline
+    data: dict[str, Any] = {
+        "design": subject.name,
+        "verdict": {
+            "kind": "implementation",
+            "law": options.law,
+            "holds": checked.holds,
+            "text": verdict(checked),
+            "agree": options.agree,
+        },
+        "section": {
+            "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
+            "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
+            "islands": len(outline.islands),
+            "faults": [str(fault) for fault in outline.faults],
+        },
+    }
+    if subject.sealing_moved is not None:
+        data["sealing_moved_mm"] = {
+            "worst": round(float(subject.sealing_moved.max()), DIGITS),
+            "median": round(float(np.median(subject.sealing_moved)), DIGITS),
+        }
+    compared, steps = checked.comparison, checked.geometry
+    if compared is not None and steps is not None:
+        data["geometry_steps_mm"] = {
+            "raster_to_smooth": round(steps.raster_to_smooth, DIGITS),
+            "smooth_to_outline": round(steps.smooth_to_outline, DIGITS),
+            "outline_to_mesh": round(steps.outline_to_mesh, DIGITS),
+        }
+        data["difference"] = _differences(compared)
+        data["solids"] = [_solid(checked, index) for index in range(len(checked.stages))]
+    return data
+
+
+def _differences(compared: Comparison) -> dict[str, Any]:
+    loaded = compared.is_loaded
+
+    def most(values: Any) -> float | None:
+        answered = values[loaded & ~np.isnan(values)]
+        return round(float(answered.max()), DIGITS) if answered.size else None
+
+    return {
+        "cases": int(loaded.sum()),
+        "without_answer": compared.unanswered,
+        "worst_mm": most(compared.difference),
+        "worst_of_displacement": _number(compared.worst),
+        "median_of_displacement": _number(compared.median),
+        "worst_discretisation_mm": most(compared.discretisation),
+        "worst_penalty_mm": most(compared.penalty_error),
+    }
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, DIGITS)
+
+
+def _solid(checked: Checked, index: int) -> dict[str, Any]:
+    stage = checked.stages[index]
+    results = [result for key, result in checked.results.items() if key[0] == stage.name]
+    section, layers = stage.solid.section, stage.solid.heights.size - 1
+    stable = [result.outcome.negative_eigenvalues for result in results]
+    return {
+        "mesh": stage.mesh,
+        "c": stage.penalty,
+        "element": stage.solid.element,
+        "triangles": len(section.triangles),
+        "layers": layers,
+        "unknowns": _unknowns(stage.solid),
+        "iterations": sum(result.outcome.statistics.iterations for result in results),
+        "converged": sum(result.status is Status.CONVERGED for result in results),
+        "stability": _stability(stable),
+    }
+
+
+def _unknowns(solid: Any) -> int:
+    return int(solid.body().unknowns)
+
+
+def _stability(negative: list[int | None]) -> str:
+    if any(count is None for count in negative):
+        return "not checked"
+    unstable = sum(count > 0 for count in negative if count is not None)
+    return "no negative eigenvalue in any case" if unstable == 0 else f"{unstable} cases unstable"
+
+
+def timing_csv(checked: Checked) -> Iterator[tuple[str, float, str]]:
+    """What the cases cost, summed over processes."""
+    for stage in checked.stages:
+        spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]
+        for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):
+            name = what.removesuffix("_seconds").replace("seconds", "all")
+            yield f"{stage.name} {name}", sum(getattr(one, what) for one in spent), "s"

@@ -1,0 +1,17 @@
+"""The command line: `femcheck run`."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run the command line; bad input is one line on standard error and exit code 2."""
+    from beamopt.cli import prepare
+
+    prepare()
+    from femcheck.cli.application import run
+
+    sys.exit(run(sys.argv[1:]))

@@ -1,0 +1,109 @@
+"""The commands and their options; what they do is imported when they run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from beamopt.cli.endings import finish
+
+__all__ = ["app", "run"]
+
+app = typer.Typer(
+    name="femcheck",
+    help="Check a section found with the beam as a solid under pressure.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"femcheck {version('beamopt')}")
+        raise typer.Exit
+
+
+@app.callback()
+def about(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Check a section found with the beam as a solid under pressure."""
+
+
+@app.command(name="run")
+def run_designs(
+    designs: Annotated[
+        list[Path], typer.Argument(metavar="DESIGN|RUN…", help="Design files or run folders.")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the results; checks/NAME if left out."),
+    ] = None,
+    seal: Annotated[
+        float | None,
+        typer.Option(
+            metavar="MM", help="Check a copy sealed by a skin of so many mm, and say what it moved."
+        ),
+    ] = None,
+    agree: Annotated[
+        str,
+        typer.Option(help="Largest difference allowed, as a share of the tip's displacement."),
+    ] = "5%",
+    law: Annotated[
+        str, typer.Option(help="rigid-section: does the solid converge to the beam?")
+    ] = "rigid-section",
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
+    layers: Annotated[
+        int | None, typer.Option(help="Layers of elements; by the beam's turn if left out.")
+    ] = None,
+    size: Annotated[
+        float, typer.Option(help="Size of the section's triangles; below 1 is finer.")
+    ] = 1.0,
+    element: Annotated[str, typer.Option(help="wedge18; tet10 and tet4 to compare.")] = "wedge18",
+    solver: Annotated[str, typer.Option(help="auto, pardiso or superlu.")] = "auto",
+    seconds: Annotated[float, typer.Option(help="Time limit of one case.")] = 600.0,
+    gmsh: Annotated[
+        str | None, typer.Option(help="The gmsh executable; found by itself if left out.")
+    ] = None,
+    gmsh_seconds: Annotated[float, typer.Option(help="Time limit of one section mesh.")] = 60.0,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
+        False
+    ),
+) -> None:
+    """Mesh designs, load their chambers, and compare the solid's tips with the beam's.
+
+    Ends with 0 if every design agrees, 1 if one does not or has cases without an answer.
+    """
+    from femcheck.cli.run import RunRequest, run_command
+
+    run_command(
+        RunRequest(
+            designs,
+            out,
+            seal,
+            agree,
+            law,
+            workers,
+            layers,
+            size,
+            element,
+            solver,
+            seconds,
+            gmsh,
+            gmsh_seconds,
+            resume,
+        )
+    )
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command; returns the exit code."""
+    return finish(app, "femcheck", arguments)
