@@ -18,6 +18,7 @@ from femcheck.material.law import Law
 from femcheck.mesh.extrusion import Extrusion, extrude
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import Body, discretise, nodes_at
+from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State, moved, rest_state
 
@@ -55,8 +56,10 @@ class Solid:
         return discretise(extrude(self.section, self.heights), self.element)
 
     def shown(self) -> Shown:
-        """Its corners and the middles of its upright edges, as a finer mesh to look at."""
+        """Its corners, and the middles of upright edges that are nodes, as a mesh to look at."""
         body = self.body()
+        if ELEMENTS[self.element].wall_degree == 1:
+            return Shown(body.extrusion, nodes_at(body, body.extrusion.points))
         middles = (self.heights[1:] + self.heights[:-1]) / 2
         finer = extrude(self.section, np.sort(np.concatenate([self.heights, middles])))
         return Shown(finer, nodes_at(body, finer.points))
