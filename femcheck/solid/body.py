@@ -114,7 +114,7 @@ def _walls(
     supply = extrusion.supply[quadrangle]
     chosen = supply > 0
     shape = facet_shape(corners.shape[1], choice.wall_degree)
-    at = np.einsum("bc,fcx->fbx", shape.places, extrusion.points[corners[chosen]])
+    at = np.einsum("bc,fcx->fbx", shape.places, corners[chosen])
     found = _nearest(nodes, at.reshape(-1, 3))
     return found.reshape(at.shape[:2]), supply[chosen], shape
 

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import IndexArray
+from beamopt.arrays import FloatArray, IndexArray
 from femcheck.mesh.extrusion import Extrusion
+from femcheck.mesh.subdivision import subdivide
 
 __all__ = ["DEFAULT_ELEMENT", "ELEMENTS", "ElementChoice"]
 
@@ -23,14 +24,15 @@ class ElementChoice:
     name : what the command line and files call it.
     basis : makes scikit-fem's basis of an extruded section.
     functions : how many of the element's functions are not zero.
-    wall_corners : corners (f, 3 or 4) of the wall facets and the index of their quadrangle (f,).
+    wall_corners : corners (f, 3 or 4, 3) of the wall facets [mm] and the index of their quadrangle
+        (f,) among the extrusion's.
     wall_degree : degree of the shape functions on a wall facet.
     """
 
     name: str
     basis: Callable[[Extrusion], Any]
     functions: int
-    wall_corners: Callable[[Extrusion], tuple[IndexArray, IndexArray]]
+    wall_corners: Callable[[Extrusion], tuple[FloatArray, IndexArray]]
     wall_degree: int
 
 
@@ -60,26 +62,46 @@ def _split(wedges: IndexArray) -> IndexArray:
     return np.concatenate([w[:, k : k + 4] for k in range(3)])
 
 
-def _quadrangles(body: Extrusion) -> tuple[IndexArray, IndexArray]:
-    return body.walls, np.arange(len(body.walls))
+def _hex27(body: Extrusion) -> Any:
+    from skfem import Basis, ElementHex2, MeshHex
+
+    cut = subdivide(body)
+    cells = cut.cells[:, _REFERENCE_CORNERS]
+    mesh = MeshHex(cut.points.T.copy(), cells.T.astype(np.int32).copy())
+    return Basis(mesh, ElementHex2(), intorder=5)  # three points along each direction
 
 
-def _triangles(body: Extrusion) -> tuple[IndexArray, IndexArray]:
+_REFERENCE_CORNERS = (6, 2, 5, 7, 1, 3, 4, 0)
+"""scikit-fem's corners of a hexahedron, from (1, 1, 1) to (0, 0, 0), among ours: 0 to 3 below."""
+
+
+def _quadrangles(body: Extrusion) -> tuple[FloatArray, IndexArray]:
+    return body.points[body.walls], np.arange(len(body.walls))
+
+
+def _halves(body: Extrusion) -> tuple[FloatArray, IndexArray]:
+    mesh = subdivide(body)
+    return mesh.points[mesh.walls], mesh.quadrangle
+
+
+def _triangles(body: Extrusion) -> tuple[FloatArray, IndexArray]:
     """Two triangles a wall quadrangle, cut as `_split` cuts: from the higher index below."""
     a, b, B, A = body.walls.T
     rising = b > a
     first = np.where(rising, [a, b, A], [a, b, B]).T
     second = np.where(rising, [b, B, A], [a, B, A]).T
     index = np.arange(len(body.walls))
-    return np.concatenate([first, second]), np.concatenate([index, index])
+    return body.points[np.concatenate([first, second])], np.concatenate([index, index])
 
 
 ELEMENTS = {
     choice.name: choice
     for choice in (
         ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2),
+        ElementChoice("hex27", _hex27, 27, _halves, 2),
         ElementChoice("tet10", _tetrahedra("ElementTetP2", 4), 10, _triangles, 2),
         ElementChoice("tet4", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1),
     )
 }
-"""By name. The linear tetrahedron locks and the quadratic one comes slowly: for comparison only."""
+"""By name. For comparison: hexahedra need six times the nodes for the same triangles, the quadratic
+tetrahedron comes slowly, the linear one locks."""
