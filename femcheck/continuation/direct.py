@@ -82,13 +82,14 @@ class Pardiso:
         from scipy.sparse import csr_matrix
 
         began = time.perf_counter()
-        if not np.isfinite(matrix.data).all():
-            raise SingularMatrixError("the tangent has entries that are not finite")
+        _check_finite(matrix)
         pattern = (matrix.size, matrix.indices.size)
         shape = (matrix.size, matrix.size)
         self._matrix = csr_matrix((matrix.data, matrix.indices, matrix.starts), shape=shape)
         self._call(22 if self._analysed == pattern else 12, np.zeros((matrix.size, 1)))
         self._analysed = pattern
+        if self._solver.get_iparm(14) > 0:  # it goes on with a small number in the pivot's place
+            raise SingularMatrixError("a pivot vanished")
         self.factor_seconds += time.perf_counter() - began
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -131,6 +132,7 @@ class SuperLU:
         from scipy.sparse.linalg import splu
 
         began = time.perf_counter()
+        _check_finite(matrix)
         try:
             self._factors = splu(
                 matrix.whole().tocsc(),
@@ -155,3 +157,8 @@ class SuperLU:
     def negative_eigenvalues(self) -> int | None:
         """Not known."""
         return None
+
+
+def _check_finite(matrix: UpperMatrix) -> None:
+    if not np.isfinite(matrix.data).all():
+        raise SingularMatrixError("the matrix has entries that are not finite")
