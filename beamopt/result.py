@@ -10,7 +10,7 @@ from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Verdict
 from beamopt.scene import Scene
 from beamopt.target import Target
-from beamopt.workspace import NODES, rms_distance
+from beamopt.workspace import NODES, loss, rms_distance
 
 __all__ = ["Optimisation"]
 
@@ -44,6 +44,14 @@ class Optimisation:
     def rms_distance(self) -> float:
         """Root mean square distance of the best design's 27 tips from the target's [mm]."""
         return rms_distance(self.verdict.L, NODES)
+
+    @property
+    def outline_loss(self) -> float:
+        """L of what the best design is [mm²]: of its outline where it is sealed.
+
+        The search judges a raster; for unsealed designs the two are the same.
+        """
+        return float(loss(self.best.workspace.tips, self.target.workspace.tips))
 
     @property
     def evaluations(self) -> int:

@@ -155,7 +155,17 @@ def summary(result: Optimisation) -> dict[str, Any]:
         | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
         "final": _summary_of(result.history[-1].best.verdict),
         "warnings": list(result.target.warnings),
-    }
+    } | _outline(result)
+
+
+def _outline(result: Optimisation) -> dict[str, Any]:
+    """What the best design is once it is polygons; nothing for an unsealed one."""
+    sealed = result.best.seal.rules.sealed and result.verdict.status is Status.JUDGED
+    if not sealed:
+        return {}
+    faults = [str(fault) for fault in result.best.outline.faults]
+    rms = rms_distance(result.outline_loss, NODES)
+    return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
 
 
 def _summary_of(verdict: Verdict) -> dict[str, Any]:

@@ -4,10 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.judge import Status, judge_all
+from beamopt.rod.response import linear_response
 from beamopt.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import phenotypes
-from beamopt.workspace import loss
+from beamopt.workspace import loss, workspace_of
 from tests.validation import symmetry
 
 SCENE = load_scene("hand-drawn-section")
@@ -59,7 +60,8 @@ def test_a_sealed_scene_judges_sealed_sections(candidates: list[FeaturePoints]) 
     for points, verdict in zip(candidates, scene.judge(target)(candidates), strict=True):
         design = scene.design_of(points)
         assert not design.section.labels[[0, -1]].any()
-        tips = design.workspace.tips
+        response = linear_response(design.section.moments, design.actuator.youngs_modulus)
+        tips = workspace_of(response, design.actuator.length, design.pressures).tips
         assert pytest.approx(loss(tips, target.workspace.tips), rel=1e-12) == verdict.L
         assert pytest.approx(verdict.K) == JUDGE([points])[0].K  # of the points alone
 

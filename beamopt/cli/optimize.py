@@ -77,11 +77,20 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
     chambers = " + ".join(str(count) for count in pieces.chambers)
     return [
         ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
+        *_outline(result),
         ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
         ("K", f"{verdict.K:.6g}"),
         ("T = L + K", f"{verdict.T:.6g}"),
         ("islands", f"{pieces.islands} of material; chambers per supply {chambers}"),
     ]
+
+
+def _outline(result: Optimisation) -> list[tuple[str, str]]:
+    """What a sealed section is, as against the raster that the search judged."""
+    if not result.best.seal.rules.sealed:
+        return []
+    faults = [("note", str(fault)) for fault in result.best.outline.faults]
+    return [("L of outline", f"{result.outline_loss:.6g} mm²"), *faults]
 
 
 def _worth_a_look(folder: Path) -> list[str]:

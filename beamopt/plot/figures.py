@@ -44,7 +44,8 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
     figure = new_figure(13.0, 5.6, below=0.1)
     left, middle = figure.add_subplot(131), figure.add_subplot(132)
     right = figure.add_subplot(133, projection="3d")
-    draw_section(left, design.section, "section")
+    sealed = design.seal.rules.sealed
+    draw_section(left, design.section, "section", design.outline if sealed else None)
     strains = design.response.strains(design.workspace.pressures)
     lines = arc_centreline(strains, np.linspace(0, design.actuator.length, 41))
     draw_from_above(middle, design.workspace, target, lines)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from beamopt.outline.outline import Outline
 from beamopt.plot.style import BELOW, OUTLINE_COLOUR, SUPPLY_COLOURS, TYPE_COLOURS
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import SUPPLIES
@@ -32,10 +33,35 @@ def section_pixels(section: CrossSection, pixels: int) -> NDArray[np.int64]:
     return types
 
 
-def draw_section(axes: Axes, section: CrossSection, title: str = "") -> None:
-    """Draw a section in the paper's colours, chambers numbered by their supply."""
-    from matplotlib.colors import to_rgba
+def draw_section(
+    axes: Axes, section: CrossSection, title: str = "", outline: Outline | None = None
+) -> None:
+    """Draw a section in the paper's colours, chambers numbered by their supply.
+
+    outline : drawn instead of the raster, where the section is that.
+    """
     from matplotlib.patches import Patch
+
+    if outline is None:
+        _draw_raster(axes, section)
+    else:
+        _draw_outline(axes, outline)
+    grid, moments = section.grid, (section if outline is None else outline).moments
+    _number_chambers(axes, section)
+    cx, cy = moments.centroid
+    axes.plot(cx, cy, "+", color="black", ms=7, mew=1.0, zorder=3)
+    areas = moments.chamber_areas
+    handles = [Patch(fc=TYPE_COLOURS[0], label=f"material {moments.area:.0f} mm²")] + [
+        Patch(fc=colour, label=f"supply {supply}: {area:.0f} mm²")
+        for supply, colour, area in zip(SUPPLIES, SUPPLY_COLOURS, areas, strict=True)
+    ]
+    axes.legend(handles=handles, **BELOW)
+    axes.set(aspect="equal", title=title, xlabel="x [mm]", ylabel="y [mm]")
+    axes.set(xlim=_around(grid, 0), ylim=_around(grid, 1))
+
+
+def _draw_raster(axes: Axes, section: CrossSection) -> None:
+    from matplotlib.colors import to_rgba
 
     grid = section.grid
     outer = grid.outer_radius
@@ -45,17 +71,19 @@ def draw_section(axes: Axes, section: CrossSection, title: str = "") -> None:
     angles = np.linspace(grid.angles[0], grid.angles[-1], 361)
     for radius in (grid.inner_radius, outer):
         axes.plot(radius * np.cos(angles), radius * np.sin(angles), color=OUTLINE_COLOUR, lw=0.8)
-    _number_chambers(axes, section)
-    cx, cy = section.moments.centroid
-    axes.plot(cx, cy, "+", color="black", ms=7, mew=1.0, zorder=3)
-    areas = section.moments.chamber_areas
-    handles = [Patch(fc=TYPE_COLOURS[0], label=f"material {section.moments.area:.0f} mm²")] + [
-        Patch(fc=colour, label=f"supply {supply}: {area:.0f} mm²")
-        for supply, colour, area in zip(SUPPLIES, SUPPLY_COLOURS, areas, strict=True)
-    ]
-    axes.legend(handles=handles, **BELOW)
-    axes.set(aspect="equal", title=title, xlabel="x [mm]", ylabel="y [mm]")
-    axes.set(xlim=_around(grid, 0), ylim=_around(grid, 1))
+
+
+def _draw_outline(axes: Axes, outline: Outline) -> None:
+    """Material and chambers as polygons; the holes of one are the other's."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    shapes = [(TYPE_COLOURS[0], [one.points for one in piece.loops]) for piece in outline.pieces]
+    shapes += [(TYPE_COLOURS[c.supply], [c.exterior, *c.holes]) for c in outline.chambers]
+    for colour, loops in shapes:
+        closed = [Path(np.concatenate([loop, loop[:1]]), closed=True) for loop in loops]
+        path = Path.make_compound_path(*closed)
+        axes.add_patch(PathPatch(path, fc=colour, ec=OUTLINE_COLOUR, lw=0.6, zorder=1))
 
 
 def _around(grid: PolarGrid, axis: int) -> tuple[float, float]:

@@ -33,6 +33,7 @@ NAMES = (
     "mesh.vtu",
     "picture.png",
 )
+EARLY = ("cases", "design.json")  # what may be there before the marker
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
 
 
@@ -52,7 +53,7 @@ class CheckFolder:
         ------
         InputError : it holds something already, or the check of another design or question.
         """
-        claim_folder(path, MARKER, resume=resume)
+        claim_folder(path, MARKER, EARLY, resume=resume)
         clear_leftovers(path, NAMES)
         asked = {
             "schema": "femcheck/1",
@@ -69,7 +70,9 @@ class CheckFolder:
             design = path / "design.json"
             if design.exists() and design.read_text(encoding="utf-8") != subject.design.json():
                 raise InputError(design, "", None, "differs from the design asked for now")
-        (path / "cases").mkdir(exist_ok=True)
+        cases = path / "cases"
+        cases.mkdir(exist_ok=True)
+        clear_leftovers(cases, {item.name[1:].split(".npz")[0] + ".npz" for item in cases.iterdir()})
         subject.design.save(path / "design.json")
         write_atomic(there, json_text(asked))
         return cls(path)

@@ -93,13 +93,14 @@ def check(
     for stage in stages:
         shapes = Shapes(stage.solid.body())
         for key in (key for key in schedule.keys if key[0] == stage.name):
-            known = read_case(kept, key, shapes)
+            known = read_case(kept, key, shapes, stage.solid.digest)
             if known is not None:
                 schedule.results[key] = known
     total = len(schedule.keys)
+    digests = {stage.name: stage.solid.digest for stage in stages}
 
     def keep(key: Key, result: CaseResult) -> None:
-        write_case(kept, key, result)
+        write_case(kept, key, result, digests[key[0]])
         if progress is not None:
             progress(len(schedule.results), total, f"{key[0]} {result.status.value}")
 

@@ -51,16 +51,20 @@ class Schedule:
         return np.array([self.levels[index] for index in node])
 
     def is_ready(self, key: Key) -> bool:
-        """Whether everything that predicts a case is known."""
+        """Whether everything that predicts a case is known, and everything that it may start from.
+
+        What else is known by then must not matter: it depends on how many are solved at once.
+        """
         name, node = key
         follows = self._stage[name].follows
-        if follows is not None and (follows, node) not in self.results:
-            return False
         needed = [source for _, source in prediction(node, self.levels)]
-        return all(
-            name in self.slopes if isinstance(source, int) else (name, source) in self.results
-            for source in needed
-        )
+        known = all(self._is_known(name, source) for source in (*needed, *ancestors(node)))
+        if follows is None or not known:
+            return known
+        return all(self._is_known(follows, source) for source in (*needed, node))
+
+    def _is_known(self, name: str, source: Node | int) -> bool:
+        return name in self.slopes if isinstance(source, int) else (name, source) in self.results
 
     def case(self, key: Key) -> Case:
         """The case with its guess and its start."""
@@ -113,17 +117,24 @@ def solve_all(
     """Solve what is not in `schedule.results` yet, `workers` cases at once.
 
     A process that dies under a case gives it the status `STOPPED`; the others go on in a new pool.
+    Where several were under way each is tried again alone, so that only the one to blame is given
+    up, whatever the number of workers.
 
     pool : makes the executor. keep : is called with every result as it comes, in any order.
     """
     waiting = [key for key in schedule.keys if key not in schedule.results]
+    suspects: list[Key] = []
     while waiting:
-        lost: set[Key] = set()
+        batch, at_once = (suspects[:1], 1) if suspects else (waiting, workers)
         with pool() as executor:
-            lost = _until_broken(schedule, waiting, executor, workers, keep)
-        for key in sorted(lost):
+            lost = _until_broken(schedule, batch, executor, at_once, keep)
+        suspects = suspects[1:]
+        if len(lost) == 1:
+            (key,) = lost
             schedule.results[key] = stopped()
             keep(key, schedule.results[key])
+        else:
+            suspects += sorted(lost)
         waiting = [key for key in waiting if key not in schedule.results]
 
 
@@ -135,16 +146,25 @@ def _until_broken(
     keep: Callable[[Key, CaseResult], None],
 ) -> set[Key]:
     """Go on until all is done, or a process died; then return what was under way."""
+    begun = {key[0] for key in waiting}
+    begun |= {stage.follows for stage in schedule.stages if stage.name in begun and stage.follows}
     for stage in schedule.stages:
-        if stage.name not in schedule.slopes and any(key[0] == stage.name for key in waiting):
-            schedule.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
+        if stage.name in begun and stage.name not in schedule.slopes:
+            try:
+                schedule.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
+            except BrokenProcessPool:
+                schedule.slopes[stage.name] = None  # its cases start without a prediction
+                return set()
     running: dict[Future[CaseResult], Key] = {}
     left = list(waiting)
     while left or running:
         for key in [key for key in left if schedule.is_ready(key)]:
             if len(running) >= workers:
                 break
-            running[executor.submit(solve_case, schedule.case(key))] = key
+            try:
+                running[executor.submit(solve_case, schedule.case(key))] = key
+            except BrokenProcessPool:
+                return {key, *running.values()}
             left.remove(key)
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:

@@ -69,7 +69,7 @@ class Pardiso:
 
         self._failure = PyPardisoError
         self._solver: Any = PyPardisoSolver(mtype=-2)
-        for place, value in ((1, 1), (2, 2), (8, 2), (10, 8), (11, 0), (13, 0), (21, 1)):
+        for place, value in ((1, 1), (2, 2), (8, 0), (10, 8), (11, 0), (13, 0), (21, 1)):
             # own settings; nested dissection; refinement; pivots of 1e-8; no scaling or matching by
             # values, so that the analysis does not depend on which case comes first
             self._solver.set_iparm(place, value)

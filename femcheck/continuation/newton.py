@@ -30,7 +30,7 @@ class Newton:
     most_iterations : after which it has failed.
     """
 
-    tolerance: float = 1e-4
+    tolerance: float = 1e-3
     most_iterations: int = 25
 
     def solve(

@@ -25,9 +25,9 @@ class SectionSizes:
     """
 
     factor: float = 1.0
-    largest: float = 4.5
+    largest: float = 5.0
     per_wall: float = 2.5
-    growth: float = 0.8
+    growth: float = 1.5
 
 
 def geo_script(outline: Outline, sizes: SectionSizes) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import shutil
 import signal
@@ -128,7 +130,8 @@ def _read(file: Path, outline: Outline) -> SectionMesh | MeshFailure:
     import meshio
 
     try:
-        mesh = meshio.read(file)
+        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
+            mesh = meshio.read(file)
         triangles = mesh.get_cells_type("triangle").astype(np.int64)
         edges = mesh.get_cells_type("line").astype(np.int64)
         supply = mesh.get_cell_data("gmsh:physical", "line").astype(np.int64) - 1
