@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from tests.bench import evaluation, study
+from tests.bench import evaluation, solid, study
 from tests.bench.measured import report
 
-BENCHES = {"evaluation": evaluation.measure, "study": study.measure}
+BENCHES = {"evaluation": evaluation.measure, "study": study.measure, "solid": solid.measure}
 
 
 def main() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,11 @@ from beamopt.files import csv_text, write_atomic
 from beamopt.plot.style import save_figure
 from beamopt.provenance import thread_settings
 
-REPORTS = Path(__file__).resolve().parents[2] / "reports" / "bench"
+QUICK = bool(os.environ.get("BENCH_QUICK"))
+"""Small sizes, to try a benchmark itself: its report is kept apart from the measured ones."""
+
+ROOT = Path(__file__).resolve().parents[2]
+REPORTS = ROOT / "runs" / "bench-quick" if QUICK else ROOT / "reports" / "bench"
 
 
 @dataclass(frozen=True)
