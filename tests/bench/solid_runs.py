@@ -22,7 +22,7 @@ WORKERS = 2
 def three_chamber_check(folder: Path, options: Sequence[str]) -> Iterator[Measured]:
     """The drawn chambers at 27 pressures."""
     design = three_chambers().save(folder / "three-chambers.json")
-    yield from check("check of three drawn chambers", design, folder / "drawn", options, 120)
+    yield from _check("drawn check", design, folder / "drawn", options, 120)
 
 
 def voronoi_check(folder: Path, design: Path | None, options: Sequence[str]) -> Iterator[Measured]:
@@ -32,10 +32,10 @@ def voronoi_check(folder: Path, design: Path | None, options: Sequence[str]) -> 
         arguments = ["sealed-section", "--seed", "0", "--out", str(design)]
         took, _ = _command("beamopt", "optimize", *arguments)
         yield Measured("beamopt optimize sealed-section --seed 0", took, "s")
-    yield from check("check of a sealed Voronoi section", design, folder / "found", options, 360)
+    yield from _check("Voronoi check", design, folder / "found", options, 360)
 
 
-def check(
+def _check(
     name: str, design: Path, out: Path, options: Sequence[str], budget: float
 ) -> Iterator[Measured]:
     """`femcheck run`: seconds, unknowns, iterations, errors as shares of the tip's displacement.
@@ -50,7 +50,7 @@ def check(
     yield Measured(f"{name}, exit code", code, "")
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     for solid in summary.get("solids", []):
-        at = f"{name}, {solid['mesh']} mesh, c = {solid['c']:g}"
+        at = f"{name}, {solid['mesh']}, c = {solid['c']:g}"
         yield Measured(f"{at}: degrees of freedom", solid["unknowns"], "")
         yield Measured(f"{at}: triangles", solid["triangles"], "")
         yield Measured(f"{at}: layers", solid["layers"], "")
