@@ -72,7 +72,8 @@ class CheckFolder:
                 raise InputError(design, "", None, "differs from the design asked for now")
         cases = path / "cases"
         cases.mkdir(exist_ok=True)
-        clear_leftovers(cases, {item.name[1:].split(".npz")[0] + ".npz" for item in cases.iterdir()})
+        killed = {item.name[1:].partition(".npz")[0] + ".npz" for item in cases.iterdir()}
+        clear_leftovers(cases, killed)
         subject.design.save(path / "design.json")
         write_atomic(there, json_text(asked))
         return cls(path)

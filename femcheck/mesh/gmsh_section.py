@@ -131,13 +131,14 @@ def _read(file: Path, outline: Outline) -> SectionMesh | MeshFailure:
 
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
-            mesh = meshio.read(file)
+            mesh = meshio.gmsh.read(file)  # `meshio.read` ends the process
         triangles = mesh.get_cells_type("triangle").astype(np.int64)
         edges = mesh.get_cells_type("line").astype(np.int64)
         supply = mesh.get_cell_data("gmsh:physical", "line").astype(np.int64) - 1
         points = mesh.points[:, :2].astype(np.float64)
-    except (OSError, ValueError, KeyError, IndexError, AttributeError, meshio.ReadError) as error:
-        return MeshFailure(MeshProblem.NO_MESH, " ".join(str(error).split()))
+    except Exception as error:  # what meshio's reader raises at a damaged file has no end
+        said = " ".join(str(error).split())
+        return MeshFailure(MeshProblem.NO_MESH, said or type(error).__name__)
     if not triangles.size or not edges.size:
         return MeshFailure(MeshProblem.NO_MESH, "no triangles")
     section = _ordered(points, triangles, edges, supply)
