@@ -86,7 +86,7 @@ def _figure(names: Sequence[str], tables: Sequence[Sequence[Cost]]) -> object:
         over, held = name.split(", ")
         axes.set(xlabel=f"{over} ({held})")
         axes.set_xticks(counts, [f"{count:.0f}" for count in counts])
-        axes.minorticks_off()
+        axes.xaxis.minorticks_off()
         axes.grid(True)
         axes.legend()
         if axes.get_subplotspec().is_first_col():
