@@ -10,16 +10,15 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.files import write_atomic
 from beamopt.plot.style import SUPPLY_COLOURS
 from beamopt.rod.arc import arc_centreline
-
-if TYPE_CHECKING:
-    from femcheck.check.run import Checked
+from femcheck.check.checked import Checked
 
 __all__ = ["draw"]
 
@@ -46,8 +45,6 @@ def draw(folder: Path, checked: Checked) -> bool:
         if not image.exists():
             (folder / "picture.log").write_text(said, encoding="utf-8")
             return False
-        from beamopt.files import write_atomic
-
         write_atomic(folder / "picture.png", image.read_bytes())
     return True
 
@@ -111,9 +108,10 @@ def _render(data: Path, image: Path) -> None:
     plotter.set_background("white")
     _draw_section(plotter, scene)
     plotter.subplot(0, 1)
-    _draw_body(plotter, scene, scene["rest"], 0.08)
-    _draw_body(plotter, scene, scene["now"], 0.3)
-    plotter.add_mesh(pyvista.MultipleLines(points=scene["line"]).tube(radius=0.5), color=BEAM)
+    plotter.enable_depth_peeling(12)
+    _draw_body(plotter, scene, scene["rest"], 0.05)
+    _draw_body(plotter, scene, scene["now"], 0.16)
+    plotter.add_mesh(pyvista.MultipleLines(points=scene["line"]).tube(radius=0.8), color=BEAM)
     plotter.add_text(str(scene["title"]), font_size=11, color="black", position="upper_left")
     plotter.add_text(
         "pale: undeformed    black line: the beam",

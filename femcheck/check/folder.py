@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import read_json
 from beamopt.provenance import provenance
+from femcheck.check.checked import Checked
 from femcheck.check.options import CheckOptions
 from femcheck.check.subject import Subject
 from femcheck.check.tables import compare_csv, summary, table_csv, timing_csv
-
-if TYPE_CHECKING:
-    from femcheck.check.run import Checked
 
 __all__ = ["CheckFolder"]
 

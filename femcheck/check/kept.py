@@ -58,7 +58,8 @@ def write_case(folder: Path, key: Key, result: CaseResult, digest: str) -> None:
 def read_case(folder: Path, key: Key, shapes: Shapes, digest: str) -> CaseResult | None:
     """A kept result; None where there is none, none that can be read, or one of another solid."""
     try:
-        with np.load(case_file(folder, key), allow_pickle=False) as kept:
+        data = io.BytesIO(case_file(folder, key).read_bytes())
+        with np.load(data, allow_pickle=False) as kept:
             if str(kept["digest"]) != digest:
                 return None
             steps, iterations = kept["counts"].tolist()
@@ -75,7 +76,7 @@ def read_case(folder: Path, key: Key, shapes: Shapes, digest: str) -> CaseResult
                 statistics,
             )
             if state is None:
-                return CaseResult(outcome)
+                return None if status is Status.CONVERGED else CaseResult(outcome)
             energy = float(kept["strain_energy"])
             return CaseResult(outcome, shapes.of(state), kept["volumes"], energy)
     except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):

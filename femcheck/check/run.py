@@ -5,25 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from beamopt.study.pool import processes
 from femcheck.check.case import CaseResult, Solid
-from femcheck.check.comparison import Comparison, compare
+from femcheck.check.checked import Checked
+from femcheck.check.comparison import compare
 from femcheck.check.folder import CheckFolder
 from femcheck.check.kept import read_case, write_case
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Key, Schedule, solve_all
 from femcheck.check.stage import Stage, layers_for
-from femcheck.check.subject import GeometrySteps, Subject, geometry_steps
+from femcheck.check.subject import Subject, geometry_steps
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import stations
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
+from femcheck.mesh.quality import quality_of
 from femcheck.mesh.section_mesh import SectionMesh
 
-__all__ = ["Checked", "check"]
+__all__ = ["check_design"]
 
 COARSER = 1.6  # sizes of the coarse section mesh over those of the standard one
 
@@ -31,33 +33,7 @@ Progress = Callable[[int, int, str], None]
 Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
-@dataclass(frozen=True, eq=False)
-class Checked:
-    """What a check found.
-
-    failure : why there is no solid; then `comparison`, `geometry` and `stages` are empty.
-    """
-
-    subject: Subject
-    options: CheckOptions
-    failure: MeshFailure | None
-    comparison: Comparison | None
-    geometry: GeometrySteps | None
-    stages: tuple[Stage, ...]
-    results: dict[Key, CaseResult]
-
-    @property
-    def holds(self) -> bool:
-        """Whether every loaded case has an answer and agrees."""
-        compared = self.comparison
-        return (
-            compared is not None
-            and compared.unanswered == 0
-            and compared.worst <= self.options.agree
-        )
-
-
-def check(
+def check_design(
     subject: Subject,
     out: Path,
     options: CheckOptions,
@@ -84,7 +60,7 @@ def check(
     folder = CheckFolder.open(out, subject, options, resume=resume)
     sections = _sections(subject, options)
     if isinstance(sections, MeshFailure):
-        checked = Checked(subject, options, sections, None, None, (), {})
+        checked = Checked(subject, options, sections, None, None, None, (), {})
         folder.write(checked)
         return checked
     stages = _stages(subject, options, *sections)
@@ -109,7 +85,8 @@ def check(
     solve_all(schedule, lambda: pool(workers), workers, keep)
     compared = compare(subject, stages, schedule.results)
     geometry = geometry_steps(subject, sections[0])
-    checked = Checked(subject, options, None, compared, geometry, stages, schedule.results)
+    quality = quality_of(subject.outline, sections[0])
+    checked = Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
     folder.write(checked)
     return checked
 

@@ -11,7 +11,7 @@ from femcheck.check.case import Solid
 __all__ = ["Stage", "layers_for"]
 
 TURN_PER_LAYER = 0.2  # rad; the error of the tip goes with its fourth power: 0.05 % there
-FEWEST_LAYERS = 4
+FEWEST_LAYERS, MOST_LAYERS = 4, 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,4 +35,4 @@ class Stage:
 
 def layers_for(turn: float) -> int:
     """Layers for an actuator that the beam says turns by at most `turn` [rad]."""
-    return max(FEWEST_LAYERS, int(np.ceil(turn / TURN_PER_LAYER)))
+    return int(np.clip(np.ceil(turn / TURN_PER_LAYER), FEWEST_LAYERS, MOST_LAYERS))

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamopt.files import csv_text
+from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
 from femcheck.continuation.outcome import Status
-
-if TYPE_CHECKING:
-    from femcheck.check.run import Checked
 
 __all__ = ["compare_csv", "summary", "table_csv", "timing_csv", "verdict"]
 
@@ -145,7 +143,15 @@ def summary(checked: Checked) -> dict[str, Any]:
             "worst": round(float(subject.sealing_moved.max()), DIGITS),
             "median": round(float(np.median(subject.sealing_moved)), DIGITS),
         }
-    compared, steps = checked.comparison, checked.geometry
+    compared, steps, quality = checked.comparison, checked.geometry, checked.quality
+    if quality is not None:
+        data["mesh"] = {
+            "thinnest_wall_mm": round(quality.thinnest, DIGITS),
+            "thinnest_wall_at_mm": [round(value, 3) for value in quality.thin_at],
+            "worst_triangle": round(quality.shape, DIGITS),
+            "worst_triangle_at_mm": [round(value, 3) for value in quality.poor_at],
+            "notes": quality.notes,
+        }
     if compared is not None and steps is not None:
         data["geometry_steps_mm"] = {
             "raster_to_smooth": round(steps.raster_to_smooth, DIGITS),

@@ -14,8 +14,9 @@ from beamopt.cli.progress import console, progress_bar
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
+from femcheck.check.checked import Checked
 from femcheck.check.options import CheckOptions
-from femcheck.check.run import Checked, check
+from femcheck.check.run import check_design
 from femcheck.check.subject import Subject, UnsealedDesignError, check_sealed, sealed_copy
 from femcheck.check.tables import verdict
 from femcheck.mesh.geo import SectionSizes
@@ -67,7 +68,7 @@ def _checked(subject: Subject, folder: Path, options: CheckOptions, request: Run
         def show(done: int, total: int, said: str) -> None:
             bar.update(task, completed=done, total=total, said=said)
 
-        return check(
+        return check_design(
             subject,
             folder,
             options,
@@ -129,7 +130,7 @@ def _subjects(request: RunRequest) -> list[Subject]:
     for path in request.designs:
         file = path / "best.json" if path.is_dir() else path
         design = load_design(file)
-        name = path.resolve().name if path.is_dir() else file.stem
+        name = _name(path, design)
         subjects.append(_subject(file, name, design, request.seal))
     names = [subject.name for subject in subjects]
     for number, name in enumerate(names):
@@ -137,6 +138,14 @@ def _subjects(request: RunRequest) -> list[Subject]:
             said = "stands there twice; results are kept by name"
             raise InputError(request.designs[number], "", None, said)
     return subjects
+
+
+def _name(path: Path, design: Design) -> str:
+    """A run's scene and seed; another design's file name."""
+    scene, seed = design.notes.get("scene"), design.notes.get("seed")
+    if path.is_dir() and isinstance(scene, str) and isinstance(seed, int):
+        return f"{scene}-{seed}"
+    return path.resolve().name if path.is_dir() else path.stem
 
 
 def _subject(file: Path, name: str, design: Design, skin: float | None) -> Subject:
@@ -185,6 +194,8 @@ def _lines(checked: Checked) -> list[tuple[str, str]]:
     area = float(outline.moments.area)
     lines = [("section", f"{area:.1f} mm² of material; chambers per supply {chambers}")]
     lines += [("note", str(fault)) for fault in outline.faults]
+    if checked.quality is not None:
+        lines += [("note", said) for said in checked.quality.notes]
     if subject.has_islands:
         lines.append(("note", "with an island the beam is not what the solid converges to"))
     moved = subject.sealing_moved

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.validation import arc, genotypes, resume, symmetry
+from tests.validation import arc, genotypes, resume, solid, symmetry
 from tests.validation.check import Check
 
 __all__ = ["SUITES"]
@@ -14,4 +14,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "genotypes": genotypes.checks,
     "symmetry": symmetry.checks,
     "resume": resume.checks,
+    "solid": solid.checks,
 }

@@ -1,0 +1,43 @@
+"""What a check found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from femcheck.check.case import CaseResult
+from femcheck.check.comparison import Comparison
+from femcheck.check.options import CheckOptions
+from femcheck.check.schedule import Key
+from femcheck.check.stage import Stage
+from femcheck.check.subject import GeometrySteps, Subject
+from femcheck.mesh.gmsh_section import MeshFailure
+from femcheck.mesh.quality import Quality
+
+__all__ = ["Checked"]
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """What a check found.
+
+    failure : why there is no solid; then `comparison`, `geometry`, `quality` and `stages` are empty.
+    """
+
+    subject: Subject
+    options: CheckOptions
+    failure: MeshFailure | None
+    comparison: Comparison | None
+    geometry: GeometrySteps | None
+    quality: Quality | None
+    stages: tuple[Stage, ...]
+    results: dict[Key, CaseResult]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every loaded case has an answer and agrees."""
+        compared = self.comparison
+        return (
+            compared is not None
+            and compared.unanswered == 0
+            and compared.worst <= self.options.agree
+        )
