@@ -20,7 +20,7 @@ __all__ = ["Checked"]
 class Checked:
     """What a check found.
 
-    failure : why there is no solid; then `comparison`, `geometry`, `quality` and `stages` are empty.
+    failure : why there is no solid; what follows is then None or empty.
     """
 
     subject: Subject

@@ -21,7 +21,7 @@ POOR = 0.1  # of an equilateral triangle's shape
 class Quality:
     """The thinnest wall and the worst triangle.
 
-    thinnest : least way through the material from a wall's edge, along its normal [mm], at `thin_at`.
+    thinnest : least way through the material, along an edge's normal [mm], at `thin_at`.
     shape : smallest 4√3 area / Σ edge², 1 for an equilateral triangle, at `poor_at` [mm].
     """
 
