@@ -4,8 +4,8 @@ All on the hand-made three-chamber section, on meshes of about as many unknowns,
 stretched state, in turn. FElupe and scikit-fem work on the very hexahedra of `hex27` and in the
 law that ours is timed in there as well, neo-Hooke; what they assemble is held against ours. A
 degree of freedom is a component of a node; each time is that of forces and tangent together, of the
-plain form the tangent's alone. Ours fill the upper triangle, include the chambers' walls and reduce the tip to a plate; the others fill
-the whole matrix and have neither.
+plain form the tangent's alone. Ours fill the upper triangle, include the chambers' walls and reduce
+the tip to a plate; the others fill the whole matrix and have neither.
 """
 
 from __future__ import annotations
