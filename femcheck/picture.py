@@ -108,9 +108,8 @@ def _render(data: Path, image: Path) -> None:
     plotter.set_background("white")
     _draw_section(plotter, scene)
     plotter.subplot(0, 1)
-    plotter.enable_depth_peeling(12)
-    _draw_body(plotter, scene, scene["rest"], 0.05)
-    _draw_body(plotter, scene, scene["now"], 0.16)
+    _draw_body(plotter, scene, scene["rest"], 0.06)
+    _draw_body(plotter, scene, scene["now"], 0.14)
     plotter.add_mesh(pyvista.MultipleLines(points=scene["line"]).tube(radius=0.8), color=BEAM)
     plotter.add_text(str(scene["title"]), font_size=11, color="black", position="upper_left")
     plotter.add_text(
@@ -172,7 +171,7 @@ def _draw_body(plotter: Any, scene: dict[str, Any], at: FloatArray, opacity: flo
         walls = scene["walls"][scene["supply"] == supply]
         if len(walls):
             mesh = pyvista.PolyData(at, _faces(walls))
-            shown = opacity if supply == 0 else min(1.0, 2.2 * opacity)
+            shown = opacity if supply == 0 else 1.7 * opacity
             plotter.add_mesh(mesh, color=colour, opacity=shown, smooth_shading=False)
 
 

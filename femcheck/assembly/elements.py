@@ -89,16 +89,20 @@ def add_element_stiffness(
     """
     elements, points, _, nodes = gradients.shape
     size = 3 * nodes
-    B, DB = np.empty((6, size)), np.empty((6, size))
+    # all points of an element below each other: one product with BLAS an element
+    B, DB = np.empty((6 * points, size)), np.empty((6 * points, size))
+    G, SG = np.empty((3 * points, nodes)), np.empty((3 * points, nodes))
     K, along = np.empty((size, size)), np.empty((nodes, nodes))
     for e in range(elements):
-        K[:] = 0.0
-        along[:] = 0.0
         for q in range(points):
-            _strain_matrix(F[e, q], gradients[e, q], B)
-            _times(D[e, q], weights[e, q], B, DB)
-            _add_product(B, DB, K)
-            _add_initial_stress(S[e, q], weights[e, q], gradients[e, q], along)
+            w, g = weights[e, q], gradients[e, q]
+            rows = B[6 * q : 6 * q + 6]
+            _strain_matrix(F[e, q], g, rows)
+            _times(D[e, q], w, rows, DB[6 * q : 6 * q + 6])
+            G[3 * q : 3 * q + 3] = g
+            _stressed(S[e, q], w, g, SG[3 * q : 3 * q + 3])
+        np.dot(B.T, DB, K)
+        np.dot(G.T, SG, along)
         _scatter(K, along, blocks[e], places[e], starts, data)
 
 
@@ -134,29 +138,13 @@ def _times(D: FloatArray, weight: float, B: FloatArray, DB: FloatArray) -> None:
 
 
 @compiled
-def _add_product(B: FloatArray, DB: FloatArray, K: FloatArray) -> None:
-    """Add the upper triangle of Bᵀ (D B)."""
-    size = B.shape[1]
-    d0, d1, d2, d3, d4, d5 = DB[0], DB[1], DB[2], DB[3], DB[4], DB[5]
-    for p in range(size):
-        row = K[p]
-        b0, b1, b2, b3, b4, b5 = B[0, p], B[1, p], B[2, p], B[3, p], B[4, p], B[5, p]
-        for m in range(p, size):
-            row[m] += b0 * d0[m] + b1 * d1[m] + b2 * d2[m] + b3 * d3[m] + b4 * d4[m] + b5 * d5[m]
-
-
-@compiled
-def _add_initial_stress(s: FloatArray, weight: float, g: FloatArray, along: FloatArray) -> None:
-    """Add w G·S·G, the same for all three components."""
-    nodes = g.shape[1]
-    g0, g1, g2 = g[0], g[1], g[2]
-    for a in range(nodes):
-        t0 = weight * (s[0] * g0[a] + s[3] * g1[a] + s[5] * g2[a])
-        t1 = weight * (s[3] * g0[a] + s[1] * g1[a] + s[4] * g2[a])
-        t2 = weight * (s[5] * g0[a] + s[4] * g1[a] + s[2] * g2[a])
-        row = along[a]
-        for b in range(nodes):
-            row[b] += t0 * g0[b] + t1 * g1[b] + t2 * g2[b]
+def _stressed(s: FloatArray, weight: float, g: FloatArray, SG: FloatArray) -> None:
+    """w S·G: with Gᵀ before it, the stiffness of initial stress, the same for all components."""
+    for a in range(g.shape[1]):
+        g0, g1, g2 = g[0, a], g[1, a], g[2, a]
+        SG[0, a] = weight * (s[0] * g0 + s[3] * g1 + s[5] * g2)
+        SG[1, a] = weight * (s[3] * g0 + s[1] * g1 + s[4] * g2)
+        SG[2, a] = weight * (s[5] * g0 + s[4] * g1 + s[2] * g2)
 
 
 @compiled
@@ -179,5 +167,4 @@ def _scatter(
                 first = starts[3 * A + i] + 3 * places[a, b] - i
                 for j in range(i if diagonal else 0, 3):
                     p, m = i * nodes + a, j * nodes + b
-                    value = K[p, m] if p <= m else K[m, p]
-                    data[first + j] += value + (along[a, b] if i == j else 0.0)
+                    data[first + j] += K[p, m] + (along[a, b] if i == j else 0.0)
