@@ -139,7 +139,7 @@ def _times(D: FloatArray, weight: float, B: FloatArray, DB: FloatArray) -> None:
 
 @compiled
 def _stressed(s: FloatArray, weight: float, g: FloatArray, SG: FloatArray) -> None:
-    """w S·G: with Gᵀ before it, the stiffness of initial stress, the same for all components."""
+    """Weighted S·G: with Gᵀ before it the stiffness of initial stress, alike for all components."""
     for a in range(g.shape[1]):
         g0, g1, g2 = g[0, a], g[1, a], g[2, a]
         SG[0, a] = weight * (s[0] * g0 + s[3] * g1 + s[5] * g2)
