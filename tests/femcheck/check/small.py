@@ -1,0 +1,89 @@
+"""A check that takes seconds: a disc with three round chambers, as coarse as its outline allows."""
+
+import json
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.bundled import bundled_scenes
+from beamopt.design import Design
+from beamopt.outline.build import build_outline
+from beamopt.outline.outline import Outline
+from femcheck.check.options import CheckOptions
+from femcheck.check.subject import Subject
+from femcheck.mesh.geo import SectionSizes
+
+SEALED = bundled_scenes()["sealed-section"].with_name("sealed_section.json")
+SIZES = SectionSizes(factor=3.0, growth=5.0)
+LEVELS = [0, 20, 40]
+
+
+class Coarse(Subject):
+    """The same rules with chords ten times farther from the smooth outline."""
+
+    @cached_property
+    def outline(self) -> Outline:  # type: ignore[override]
+        design = self.design
+        return build_outline(design.grid.build(), design._source, design.seal.rules, 0.4)
+
+
+def three_circles() -> list[dict[str, Any]]:
+    angles = np.radians([0, 120, 240])
+    return [
+        {"supply": k, "center": [7 * np.cos(a), 7 * np.sin(a)], "radius": 2.8 + 0.2 * k}
+        for k, a in enumerate(angles.tolist(), 1)
+    ]
+
+
+def design_of(drawing: list[dict[str, Any]], **changes: Any) -> Design:
+    data = json.loads(SEALED.read_text())
+    data["grid"] |= {"inner_radius": 0, "outer_radius": 15, "radial": 32, "angular": 120}
+    data["pressures"] = LEVELS
+    for key, value in changes.items():
+        data[key] = data[key] | value if isinstance(value, dict) else value
+    return Design.model_validate(data | {"drawing": drawing})
+
+
+def small_subject(name: str = "small", **changes: Any) -> Subject:
+    return Coarse(name, design_of(three_circles(), **changes))
+
+
+def small_options(**changes: Any) -> CheckOptions:
+    return CheckOptions(**({"layers": 2, "sizes": SIZES} | changes))
+
+
+def quick_options(**changes: Any) -> CheckOptions:
+    """Of the linear tetrahedron: wrong and fast, where it is not the answer that is looked at."""
+    return small_options(**({"element": "tet4"} | changes))
+
+
+class Here(Executor):
+    """Runs what it is given at once, in this process."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except BaseException as error:
+            future.set_exception(error)
+        return future
+
+
+@contextmanager
+def here(workers: int) -> Iterator[Executor]:
+    yield Here()
+
+
+def kept_files(folder: Path, pictures: bool = False) -> dict[str, bytes]:
+    """What a check must reproduce: all but times, versions, pictures and the cases' own times."""
+    left_out = {"timing.csv", "provenance.json"} | (set() if pictures else {"picture.png"})
+    return {
+        str(file.relative_to(folder)): file.read_bytes()
+        for file in sorted(folder.rglob("*"))
+        if file.is_file() and file.name not in left_out and file.parent.name != "cases"
+    }
