@@ -67,7 +67,9 @@ def run_designs(
     size: Annotated[
         float, typer.Option(help="Size of the section's triangles; below 1 is finer.")
     ] = 1.0,
-    element: Annotated[str, typer.Option(help="wedge18; hex27, tet10, tet4 to compare.")] = "wedge18",
+    element: Annotated[
+        str, typer.Option(help="wedge18; hex27, tet10 and tet4 to compare.")
+    ] = "wedge18",
     solver: Annotated[str, typer.Option(help="auto, pardiso or superlu.")] = "auto",
     seconds: Annotated[float, typer.Option(help="Time limit of one case.")] = 600.0,
     gmsh: Annotated[
