@@ -18,6 +18,7 @@ from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Key, Schedule, solve_all
 from femcheck.check.stage import Stage, layers_for
 from femcheck.check.subject import Subject, geometry_steps
+from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import stations
@@ -27,6 +28,7 @@ from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["check_design"]
 
+AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a check that goes on tries these once more
 COARSER = 1.6  # sizes of the coarse section mesh over those of the standard one
 
 Progress = Callable[[int, int, str], None]
@@ -70,7 +72,7 @@ def check_design(
         shapes = Shapes(stage.solid.body())
         for key in (key for key in schedule.keys if key[0] == stage.name):
             known = read_case(kept, key, shapes, stage.solid.digest)
-            if known is not None:
+            if known is not None and known.status not in AGAIN:
                 schedule.results[key] = known
     total = len(schedule.keys)
     digests = {stage.name: stage.solid.digest for stage in stages}
