@@ -38,9 +38,9 @@ def claim_folder(path: Path, marker: str, early: Collection[str] = (), *, resume
         raise InputError(path, "", None, f"holds files but no {marker}; nothing to go on with")
 
 
-def clear_leftovers(path: Path, names: Collection[str]) -> None:
-    """Delete what a kill left of writing any of the files `names`."""
+def clear_leftovers(path: Path, names: Collection[str] | None) -> None:
+    """Delete what a kill left of writing any of the files `names`; None: of any file."""
     for item in path.iterdir():
         name = item.name[1:].rpartition(".tmp")[0].rpartition(".")[0]
-        if LEFTOVER.fullmatch(item.name) and name in names:
+        if LEFTOVER.fullmatch(item.name) and (names is None or name in names):
             item.unlink(missing_ok=True)

@@ -21,6 +21,9 @@ def finish(app: typer.Typer, program: str, arguments: Sequence[str]) -> int:
         return _complain(program, str(error))
     except (typer.Abort, KeyboardInterrupt):
         return _complain(program, "interrupted", INTERRUPTED)
+    except ImportError as error:
+        missing = (error.name or str(error)).partition(".")[0]
+        return _complain(program, f"{missing} is not installed: pip install 'beamopt[fem]'")
     except BrokenPipeError:
         return 0
     except OSError as error:

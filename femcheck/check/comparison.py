@@ -17,11 +17,11 @@ from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
+from femcheck.solid.elements import ELEMENTS
 
 __all__ = ["Comparison", "Tips", "compare"]
 
 SMALLEST_DISPLACEMENT = 1e-3  # of the length: below it a share of the displacement says nothing
-ORDER = 4.0  # of the tip with quadratic elements along the axis: twice that of the strains
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +47,13 @@ class Comparison:
 
     solids : what was computed, and extrapolated.
     refinement : layers of the standard mesh over those of the coarse one.
+    order : p of the tip's convergence with the layers; None where it is not known.
     """
 
     subject: Subject
     solids: tuple[Tips, ...]
     refinement: float
+    order: float | None
 
     def solid(self, mesh: str, penalty: float) -> Tips:
         """One of the solids."""
@@ -89,13 +91,27 @@ class Comparison:
 
     @property
     def discretisation(self) -> FloatArray:
-        """(27,) estimated error of the standard mesh [mm], from what the coarse one differs by.
+        """(27,) estimated error of the standard mesh [mm]; NaN where the order is not known."""
+        return np.asarray(np.linalg.norm(self._mesh_error, axis=1))
 
-        With r times the layers an error of order p leaves 1/(rᵖ − 1) of the difference; p = 4.
+    @property
+    def assumptions(self) -> FloatArray:
+        """(27,) difference that is left once both meshes are extrapolated too [mm].
+
+        What beam and solid assume differently; for the rigid-section law that is nothing.
+        """
+        solid = self.final.tips + self._mesh_error
+        return np.asarray(np.linalg.norm(solid - self.subject.beam_tips, axis=1))
+
+    @property
+    def _mesh_error(self) -> FloatArray:
+        """(27, 3) what the standard mesh's tips still lack [mm].
+
+        With r times the layers an error of order p leaves 1/(rᵖ − 1) of the change (Richardson).
         """
         coarse = self.solid("coarse", np.inf)
-        change = np.linalg.norm(self.final.tips - coarse.tips, axis=1)
-        return np.asarray(change / (self.refinement**ORDER - 1))
+        left = np.nan if self.order is None else 1 / (self.refinement**self.order - 1)
+        return np.asarray((self.final.tips - coarse.tips) * left)
 
     @property
     def penalty_error(self) -> FloatArray:
@@ -135,7 +151,8 @@ def compare(
         low, high = sorted((one for one in solids if one.mesh == mesh), key=lambda one: one.penalty)
         solids.append(_extrapolated(low, high))
     layers = {stage.mesh: stage.solid.heights.size - 1 for stage in stages}
-    return Comparison(subject, tuple(solids), layers["standard"] / layers["coarse"])
+    order = ELEMENTS[stages[0].solid.element].tip_order
+    return Comparison(subject, tuple(solids), layers["standard"] / layers["coarse"], order)
 
 
 def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
@@ -29,6 +32,7 @@ NAMES = (
     "mesh.msh",
     "mesh.vtu",
     "picture.png",
+    "picture.log",
 )
 EARLY = ("cases", "design.json")  # what may be there before the marker
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
@@ -55,22 +59,20 @@ class CheckFolder:
         asked = {
             "schema": "femcheck/1",
             "design": subject.name,
-            "question": [str(item) for item in options.question],
+            "question": options.question,
         }
         there = path / MARKER
         if there.exists():
             kept = read_json(there)
-            for key, now in asked.items():
-                if kept.get(key) != now:
-                    said = f"the check to go on with; now asked for: {now}"
-                    raise InputError(there, key, kept.get(key), said)
+            for key, before, now in _differences(kept, json.loads(json_text(asked))):
+                said = f"the check to go on with; now asked for: {now}"
+                raise InputError(there, key, before, said)
             design = path / "design.json"
             if design.exists() and design.read_text(encoding="utf-8") != subject.design.json():
                 raise InputError(design, "", None, "differs from the design asked for now")
         cases = path / "cases"
         cases.mkdir(exist_ok=True)
-        killed = {item.name[1:].partition(".npz")[0] + ".npz" for item in cases.iterdir()}
-        clear_leftovers(cases, killed)
+        clear_leftovers(cases, None)
         subject.design.save(path / "design.json")
         write_atomic(there, json_text(asked))
         return cls(path)
@@ -93,7 +95,6 @@ class CheckFolder:
 
     def _write_meshes(self, checked: Checked) -> None:
         from femcheck.mesh.files import write_deformed, write_mesh
-        from femcheck.picture import draw
 
         stage = [one for one in checked.stages if one.mesh == "standard"][-1]
         write_mesh(self.path, stage.solid.body().extrusion)
@@ -105,4 +106,12 @@ class CheckFolder:
                 levels = [checked.subject.design.pressures[index] for index in node]
                 file = deformed / f"{'-'.join(f'{level:g}' for level in levels)}.vtu"
                 write_deformed(file, shown.extrusion, result.outcome.state.x[shown.nodes])
-        draw(self.path, checked)
+
+
+def _differences(before: Any, now: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Keys of nested tables whose values differ, with both values."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for name in now:
+            yield from _differences(before.get(name), now[name], f"{key}.{name}" if key else name)
+    elif before != now:
+        yield key, before, now

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 
+from beamopt.errors import InputError
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
 from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
@@ -33,7 +34,7 @@ class CheckOptions:
 
     Raises
     ------
-    ValueError : a value that can not be used, with what is allowed.
+    InputError : a value that can not be used, with what is allowed.
     """
 
     law: str = "rigid-section"
@@ -49,26 +50,28 @@ class CheckOptions:
 
     def __post_init__(self) -> None:
         if self.law not in LAWS:
-            raise ValueError(f"law = {self.law}: one of {', '.join(LAWS)}")
+            raise InputError("", "law", self.law, f"one of {', '.join(LAWS)}")
         if self.element not in ELEMENTS:
-            raise ValueError(f"element = {self.element}: one of {', '.join(ELEMENTS)}")
+            raise InputError("", "element", self.element, f"one of {', '.join(ELEMENTS)}")
         if not 0 < self.agree <= 1:
-            raise ValueError(f"agree = {self.agree:g}: above 0 and at most 1 (100 %)")
+            raise InputError("", "agree", self.agree, "above 0 and at most 1 (100 %)")
         low, high = self.penalties
         if not 0 < low < high:
-            raise ValueError(f"penalties = {self.penalties}: two positive numbers, ascending")
+            said = "two positive numbers, ascending"
+            raise InputError("", "penalties", self.penalties, said)
         if self.layers is not None and not 2 <= self.layers <= 64:
-            raise ValueError(f"layers = {self.layers}: 2…64")
+            raise InputError("", "layers", self.layers, "2…64")
+        if not 0.1 <= self.sizes.factor <= 10:
+            raise InputError("", "size", self.sizes.factor, "0.1…10")
 
     @property
-    def question(self) -> tuple[object, ...]:
+    def question(self) -> dict[str, object]:
         """What must be the same for kept cases to be gone on with."""
-        sizes = self.sizes
-        return (
-            self.law,
-            self.penalties,
-            self.element,
-            self.layers,
-            self.grading,
-            (sizes.factor, sizes.largest, sizes.per_wall, sizes.growth),
-        )
+        return {
+            "law": self.law,
+            "penalties": list(self.penalties),
+            "element": self.element,
+            "layers": self.layers,
+            "grading": self.grading,
+            "sizes": asdict(self.sizes),
+        }

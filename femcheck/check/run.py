@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 
+import femcheck.picture as picture
 from beamopt.study.pool import processes
 from femcheck.check.case import CaseResult, Solid
 from femcheck.check.checked import Checked
@@ -67,18 +68,12 @@ def check_design(
         return checked
     stages = _stages(subject, options, *sections)
     schedule = Schedule(stages, subject.design.pressures, options.seconds)
-    kept = folder.cases
-    for stage in stages:
-        shapes = Shapes(stage.solid.body())
-        for key in (key for key in schedule.keys if key[0] == stage.name):
-            known = read_case(kept, key, shapes, stage.solid.digest)
-            if known is not None and known.status not in AGAIN:
-                schedule.results[key] = known
+    _take_kept(folder.cases, schedule)
     total = len(schedule.keys)
     digests = {stage.name: stage.solid.digest for stage in stages}
 
     def keep(key: Key, result: CaseResult) -> None:
-        write_case(kept, key, result, digests[key[0]])
+        write_case(folder.cases, key, result, digests[key[0]])
         if progress is not None:
             progress(len(schedule.results), total, f"{key[0]} {result.status.value}")
 
@@ -90,7 +85,18 @@ def check_design(
     quality = quality_of(subject.outline, sections[0])
     checked = Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
     folder.write(checked)
+    picture.draw(folder.path, checked)
     return checked
+
+
+def _take_kept(folder: Path, schedule: Schedule) -> None:
+    """Put the cases that were solved before among the results."""
+    for stage in schedule.stages:
+        shapes = Shapes(stage.solid.body())
+        for key in (key for key in schedule.keys if key[0] == stage.name):
+            known = read_case(folder, key, shapes, stage.solid.digest)
+            if known is not None and known.status not in AGAIN:
+                schedule.results[key] = known
 
 
 def _sections(
@@ -100,12 +106,12 @@ def _sections(
     fatal = subject.fatal
     if fatal is not None:
         return MeshFailure(MeshProblem.FATAL, str(fatal))
-    coarse = replace(options.sizes, factor=COARSER * options.sizes.factor)
-    made = [options.mesher.mesh(subject.outline, sizes) for sizes in (options.sizes, coarse)]
-    standard, coarser = made
+    standard = options.mesher.mesh(subject.outline, options.sizes)
     if isinstance(standard, MeshFailure):
         return standard
-    return coarser if isinstance(coarser, MeshFailure) else (standard, coarser)
+    sizes = replace(options.sizes, factor=COARSER * options.sizes.factor)
+    coarse = options.mesher.mesh(subject.outline, sizes)
+    return coarse if isinstance(coarse, MeshFailure) else (standard, coarse)
 
 
 def _stages(

@@ -1,4 +1,7 @@
-"""All cases of all stages, each as soon as what predicts it is known, on any executor."""
+"""All cases of all stages, each as soon as what predicts it is known.
+
+On any executor whose workers are processes, or one thread: a worker keeps factors between cases.
+"""
 
 from __future__ import annotations
 

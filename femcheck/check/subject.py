@@ -97,11 +97,6 @@ class GeometrySteps:
     smooth_to_outline: float
     outline_to_mesh: float
 
-    @property
-    def raster_to_outline(self) -> float:
-        """At most the first two together [mm]."""
-        return self.raster_to_smooth + self.smooth_to_outline
-
 
 def geometry_steps(subject: Subject, mesh: SectionMesh) -> GeometrySteps:
     """How far the tips move from raster to smooth outline, to its polygons, to the mesh."""
@@ -114,14 +109,18 @@ def geometry_steps(subject: Subject, mesh: SectionMesh) -> GeometrySteps:
 
 
 def sealed_copy(name: str, design: Design, skin: float) -> Subject:
-    """A copy of a design sealed by a skin [mm] and walls nearly as thick, and what that moved.
+    """A copy of a design sealed by a skin [mm], walls and corners to go with it, and what it moved.
 
     Raises
     ------
-    ValueError : a skin that leaves nothing of the ring.
+    ValueError : a skin that leaves nothing of the ring, or not more than the design has already.
     """
+    if design.seal.skin >= skin:
+        raise ValueError(f"the design has a skin of {design.seal.skin:g} mm already; ask for more")
     seal = design.seal.sealed_by(skin)
-    sealed = design.model_copy(update={"seal": seal})
+    seal.check_fits(design.grid.build())
+    changes = {"seal": seal, "notes": {"sealed_copy_of": name}}
+    sealed = design.model_copy(update=changes)
     sealed = Design.model_validate(sealed.model_dump(by_alias=True, exclude_none=True))
     moved = np.linalg.norm(sealed.workspace.tips - design.workspace.tips, axis=1)
     return Subject(name, sealed, moved)

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 __all__ = ["main"]
+
+
+def _end(number: int, _frame: object) -> None:
+    """Leave as by Ctrl-C, so that gmsh and the workers are taken along."""
+    sys.exit(128 + number)
 
 
 def main() -> None:
@@ -12,6 +18,7 @@ def main() -> None:
     from beamopt.cli import prepare
 
     prepare()
+    signal.signal(signal.SIGTERM, _end)
     from femcheck.cli.application import run
 
     sys.exit(run(sys.argv[1:]))

@@ -62,20 +62,22 @@ def run_designs(
     ] = "rigid-section",
     workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
     layers: Annotated[
-        int | None, typer.Option(help="Layers of elements; by the beam's turn if left out.")
+        int | None, typer.Option(help="Layers, 2…64; as many as its bending needs if left out.")
     ] = None,
     size: Annotated[
-        float, typer.Option(help="Size of the section's triangles; below 1 is finer.")
+        float, typer.Option(help="Size of the triangles, 0.1…10; below 1 is finer.")
     ] = 1.0,
     element: Annotated[
         str, typer.Option(help="wedge18; hex27, tet10 and tet4 to compare.")
     ] = "wedge18",
     solver: Annotated[str, typer.Option(help="auto, pardiso or superlu.")] = "auto",
-    seconds: Annotated[float, typer.Option(help="Time limit of one case.")] = 600.0,
+    seconds: Annotated[float, typer.Option(metavar="S", help="Time limit of one case.")] = 600.0,
     gmsh: Annotated[
         str | None, typer.Option(help="The gmsh executable; found by itself if left out.")
     ] = None,
-    gmsh_seconds: Annotated[float, typer.Option(help="Time limit of one section mesh.")] = 60.0,
+    gmsh_seconds: Annotated[
+        float, typer.Option(metavar="S", help="Time limit of one mesh.")
+    ] = 60.0,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
         False
     ),
@@ -88,20 +90,20 @@ def run_designs(
 
     run_command(
         RunRequest(
-            designs,
-            out,
-            seal,
-            agree,
-            law,
-            workers,
-            layers,
-            size,
-            element,
-            solver,
-            seconds,
-            gmsh,
-            gmsh_seconds,
-            resume,
+            designs=designs,
+            out=out,
+            seal=seal,
+            agree=agree,
+            law=law,
+            workers=workers,
+            layers=layers,
+            size=size,
+            element=element,
+            solver=solver,
+            seconds=seconds,
+            gmsh=gmsh,
+            gmsh_seconds=gmsh_seconds,
+            resume=resume,
         )
     )
 

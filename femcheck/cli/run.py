@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import typer
-from rich.table import Table
 
-from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
 from femcheck.check.checked import Checked
+from femcheck.check.folder import CheckFolder
 from femcheck.check.options import CheckOptions
 from femcheck.check.run import check_design
 from femcheck.check.subject import Subject, UnsealedDesignError, check_sealed, sealed_copy
-from femcheck.check.tables import verdict
+from femcheck.cli.report import report
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
 
@@ -50,12 +50,14 @@ def run_command(request: RunRequest) -> None:
     options = _options(request)
     subjects = _subjects(request)
     folders = _folders(request, subjects)
+    for subject, folder in zip(subjects, folders, strict=True):
+        CheckFolder.open(folder, subject, options, resume=request.resume)  # before any work
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"threads: {threads}; {request.workers} cases at once", soft_wrap=True)
+    console.print(f"{request.workers} cases at once, {threads}", soft_wrap=True)
     everything_holds = True
     for subject, folder in zip(subjects, folders, strict=True):
         checked = _checked(subject, folder, options, request)
-        _report(checked, folder)
+        report(checked, folder)
         everything_holds = everything_holds and checked.holds
     if not everything_holds:
         raise typer.Exit(1)
@@ -68,21 +70,23 @@ def _checked(subject: Subject, folder: Path, options: CheckOptions, request: Run
         def show(done: int, total: int, said: str) -> None:
             bar.update(task, completed=done, total=total, said=said)
 
-        return check_design(
-            subject,
-            folder,
-            options,
-            workers=request.workers,
-            resume=request.resume,
-            progress=show,
-        )
+        try:
+            return check_design(
+                subject, folder, options, workers=request.workers, resume=True, progress=show
+            )
+        except KeyboardInterrupt:
+            asked = "femcheck run … --out … --resume goes on where it was"
+            console.print(f"{folder}: {asked}", soft_wrap=True, markup=False)
+            raise
 
 
 def _options(request: RunRequest) -> CheckOptions:
-    for name in ("size", "seconds", "gmsh_seconds"):
+    for name in ("seconds", "gmsh_seconds"):
         value = getattr(request, name)
         if not 0 < value < np.inf:
-            raise InputError(f"--{name.replace('_', '-')}", "", value, "above 0")
+            raise InputError(f"--{name.replace('_', '-')}", "", value, "above 0 s")
+    if request.gmsh is not None and shutil.which(request.gmsh) is None:
+        raise InputError("--gmsh", "", request.gmsh, "no such executable")
     try:
         return CheckOptions(
             law=request.law,
@@ -94,12 +98,10 @@ def _options(request: RunRequest) -> CheckOptions:
             solver=_solver(request.solver),
             mesher=Mesher(request.gmsh, request.gmsh_seconds),
         )
-    except InputError:
-        raise
-    except ValueError as error:
-        key, _, rest = str(error).partition(" = ")
-        value, _, allowed = rest.partition(": ")
-        raise InputError(f"--{key}", "", value, allowed) from None
+    except InputError as error:
+        if error.where:
+            raise
+        raise InputError(f"--{error.key}", "", error.value, error.allowed) from None
 
 
 def _share(text: str) -> float:
@@ -119,6 +121,8 @@ def _solver(name: str) -> str:
 
     try:
         direct_solver(name)
+    except ValueError:
+        raise InputError("--solver", "", name, "one of auto, pardiso, superlu") from None
     except ImportError:
         raise InputError("--solver", "", name, "not installed; auto or superlu") from None
     return name
@@ -135,7 +139,7 @@ def _subjects(request: RunRequest) -> list[Subject]:
     names = [subject.name for subject in subjects]
     for number, name in enumerate(names):
         if name in names[:number]:
-            said = "stands there twice; results are kept by name"
+            said = f"a second design called {name}; results are kept by name: rename a file"
             raise InputError(request.designs[number], "", None, said)
     return subjects
 
@@ -143,8 +147,9 @@ def _subjects(request: RunRequest) -> list[Subject]:
 def _name(path: Path, design: Design) -> str:
     """A run's scene and seed; another design's file name."""
     scene, seed = design.notes.get("scene"), design.notes.get("seed")
-    if path.is_dir() and isinstance(scene, str) and isinstance(seed, int):
-        return f"{scene}-{seed}"
+    of_run = path.is_dir() or path.stem in ("best", "final")
+    if of_run and isinstance(scene, str) and isinstance(seed, int):
+        return f"{scene}-{seed}-final" if path.stem == "final" else f"{scene}-{seed}"
     return path.resolve().name if path.is_dir() else path.stem
 
 
@@ -155,8 +160,7 @@ def _subject(file: Path, name: str, design: Design, skin: float | None) -> Subje
         try:
             return sealed_copy(name, design, skin)
         except ValueError as error:
-            first = str(error).strip().splitlines()[-1 if "seal.skin" not in str(error) else 0]
-            raise InputError("--seal", "", skin, first) from None
+            raise InputError("--seal", "", skin, str(error)) from None
     try:
         check_sealed(name, design)
     except UnsealedDesignError as error:
@@ -170,90 +174,3 @@ def _folders(request: RunRequest, subjects: list[Subject]) -> list[Path]:
         return [request.out]
     above = request.out or Path("checks")
     return [above / subject.name for subject in subjects]
-
-
-def _report(checked: Checked, folder: Path) -> None:
-    subject = checked.subject
-    console.print(f"[bold]{subject.name}[/]")
-    for name, text in _lines(checked):
-        console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)
-    if checked.comparison is not None:
-        console.print(_table(checked))
-    console.print(f"  {'implementation':<16}{verdict(checked)}", soft_wrap=True, markup=False)
-    console.print(
-        f"  {'prediction':<16}not asked: {checked.options.law} is a check of the beam, no material",
-        soft_wrap=True,
-        markup=False,
-    )
-    console.print(f"  {'files':<16}{folder}/", soft_wrap=True, markup=False)
-
-
-def _lines(checked: Checked) -> list[tuple[str, str]]:
-    subject, outline = checked.subject, checked.subject.outline
-    chambers = " + ".join(str(len(outline.chambers_of(supply))) for supply in (1, 2, 3))
-    area = float(outline.moments.area)
-    lines = [("section", f"{area:.1f} mm² of material; chambers per supply {chambers}")]
-    lines += [("note", str(fault)) for fault in outline.faults]
-    if checked.quality is not None:
-        lines += [("note", said) for said in checked.quality.notes]
-    if subject.has_islands:
-        lines.append(("note", "with an island the beam is not what the solid converges to"))
-    moved = subject.sealing_moved
-    if moved is not None:
-        said = f"moved the beam's tips by {np.median(moved):.2f} mm (median), {moved.max():.2f} mm"
-        lines.append(("sealing a copy", f"{said} (worst)"))
-    steps, compared = checked.geometry, checked.comparison
-    if steps is None or compared is None:
-        return lines
-    lines.append(
-        (
-            "geometry",
-            f"raster → smooth outline {steps.raster_to_smooth:.3f} mm, → polygons "
-            f"{steps.smooth_to_outline:.3f} mm, → mesh {steps.outline_to_mesh:.2g} mm of the tip",
-        )
-    )
-    for stage in checked.stages:
-        body = stage.solid.body()
-        lines.append(
-            (
-                "solid",
-                f"{stage.name}: {stage.solid.element}, {len(stage.solid.section.triangles)} "
-                f"triangles × {stage.solid.heights.size - 1} layers, {body.unknowns} unknowns",
-            )
-        )
-    loaded = compared.is_loaded
-    lines.append(
-        (
-            "made of",
-            f"discretisation at most {_most(compared.discretisation[loaded])} mm, penalty at c = "
-            f"{max(checked.options.penalties):g} (extrapolated away) "
-            f"{_most(compared.penalty_error[loaded])} mm",
-        )
-    )
-    return lines
-
-
-def _most(values: FloatArray) -> str:
-    known = values[~np.isnan(values)]
-    return f"{known.max():.3f}" if known.size else "?"
-
-
-def _table(checked: Checked) -> Table:
-    """27 rows of what matters most."""
-    compared = checked.comparison
-    assert compared is not None
-    table = Table(title="beam against solid, extrapolated in 1/c", title_justify="left")
-    for name in ("P1", "P2", "P3 kPa", "moves mm", "differs mm", "of it"):
-        table.add_column(name, justify="right")
-    table.add_column("status")
-    for row, pressures in enumerate(compared.subject.pressures):
-        difference, share = compared.difference[row], compared.share[row]
-        answered = not np.isnan(difference)
-        table.add_row(
-            *(f"{value:g}" for value in pressures),
-            f"{compared.displacement[row]:.2f}",
-            f"{difference:.4f}" if answered else "–",
-            f"{100 * share:.3f}%" if answered else "–",
-            compared.final.statuses[row].value,
-        )
-    return table

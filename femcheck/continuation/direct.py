@@ -140,8 +140,8 @@ class SuperLU:
                 diag_pivot_thresh=0.01,
                 options={"SymmetricMode": True},
             )
-        except RuntimeError as error:
-            raise SingularMatrixError(str(error)) from None
+        except (RuntimeError, MemoryError) as error:
+            raise SingularMatrixError(str(error) or "not enough memory") from None
         self.factor_seconds += time.perf_counter() - began
 
     def solve(self, right: FloatArray) -> FloatArray:

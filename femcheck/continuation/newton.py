@@ -30,7 +30,7 @@ class Newton:
     most_iterations : after which it has failed.
     """
 
-    tolerance: float = 1e-3
+    tolerance: float = 2e-4
     most_iterations: int = 25
 
     def solve(

@@ -21,7 +21,7 @@ class Law(Protocol):
         ...
 
     def energy(self, C: FloatArray) -> FloatArray:
-        """W (n,) [kPa = mJ/cm³·10⁻³] at C (n, 6)."""
+        """W (n,) [kPa = mN mm/mm³] at C (n, 6)."""
         ...
 
     def stress(self, C: FloatArray) -> FloatArray:

@@ -32,7 +32,7 @@ class RigidSection:
     """
 
     youngs_modulus: float
-    penalty: float = 1000.0
+    penalty: float
     shear_modulus: float | None = None
 
     def __post_init__(self) -> None:

@@ -51,7 +51,7 @@ class MeshFailure:
 class Mesher:
     """How gmsh is called.
 
-    command : the executable; None takes the one of this environment, then the one on the path.
+    command : the executable; None takes the first on the path, then the one beside python.
     seconds : time limit [s].
     """
 

@@ -27,6 +27,8 @@ class ElementChoice:
     wall_corners : corners (f, 3 or 4, 3) of the wall facets [mm] and the index of their quadrangle
         (f,) among the extrusion's.
     wall_degree : degree of the shape functions on a wall facet.
+    tip_order : order in which the tip of a bending rod converges with the layers; None where it
+        locks, and two meshes say nothing.
     """
 
     name: str
@@ -34,6 +36,7 @@ class ElementChoice:
     functions: int
     wall_corners: Callable[[Extrusion], tuple[FloatArray, IndexArray]]
     wall_degree: int
+    tip_order: float | None
 
 
 def _wedge18(body: Extrusion) -> Any:
@@ -97,10 +100,10 @@ def _triangles(body: Extrusion) -> tuple[FloatArray, IndexArray]:
 ELEMENTS = {
     choice.name: choice
     for choice in (
-        ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2),
-        ElementChoice("hex27", _hex27, 27, _halves, 2),
-        ElementChoice("tet10", _tetrahedra("ElementTetP2", 4), 10, _triangles, 2),
-        ElementChoice("tet4", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1),
+        ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2, 4.0),
+        ElementChoice("hex27", _hex27, 27, _halves, 2, 4.0),
+        ElementChoice("tet10", _tetrahedra("ElementTetP2", 4), 10, _triangles, 2, 2.0),
+        ElementChoice("tet4", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1, None),
     )
 }
 """By name. For comparison: hexahedra need six times the nodes for the same triangles, the quadratic

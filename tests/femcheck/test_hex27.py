@@ -28,7 +28,7 @@ def test_hexahedra_fill_the_body_and_walls_enclose_the_chambers() -> None:
     assert body.connectivity.shape == (3 * len(extrusion.wedges), 27)
     assert body.weights.min() > 0
     np.testing.assert_allclose(body.weights.sum(), LENGTH * moments.area, rtol=1e-12)
-    enclosed = Equilibrium(body, RigidSection(300.0)).volumes(rest_state(body))
+    enclosed = Equilibrium(body, RigidSection(300.0, 1000.0)).volumes(rest_state(body))
     np.testing.assert_allclose(enclosed, LENGTH * moments.chamber_areas, rtol=1e-12)
     # every node where its shape function says: the gradient of the undeformed positions is one
     F = np.einsum("eqja,eai->eqij", body.gradients, body.nodes[body.connectivity])

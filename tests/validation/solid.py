@@ -63,10 +63,13 @@ def checks(full: bool) -> list[Check]:
 
 
 def coarse_three_chambers() -> Iterator[Row]:
-    """All 27 combinations on a mesh just fine enough to tell a wrong sign or area (20 s)."""
-    options = CheckOptions(layers=3, sizes=SectionSizes(factor=2.0))
+    """All 27 combinations through the whole chain: some ten seconds, for a wrong sign or area.
+
+    Two layers leave half a percent to the mesh.
+    """
+    options = CheckOptions(layers=2, sizes=SectionSizes(factor=3.0))
     found = compared("three", three_chambers(), options)
-    yield from rows("three chambers, coarse", found, median=0.003, worst=0.003)
+    yield from rows("three chambers, coarse", found, median=0.005, worst=0.01)
 
 
 def three_chamber_rows() -> Iterator[Row]:

@@ -34,7 +34,7 @@ def test_it_holds(done: Done) -> None:
     checked, _ = done
     assert checked.holds
     assert checked.failure is None
-    assert verdict(checked).startswith("the solid converges to the beam: worst 0.")
+    assert verdict(checked).startswith("agrees: worst 0.")
     assert len(checked.results) == 4 * 27
     assert all(result.status is Status.CONVERGED for result in checked.results.values())
 

@@ -63,7 +63,7 @@ def stages() -> list[Stage]:
     section = lattice_section()
     return [
         Stage(
-            Solid(name, section, np.array([0.0, 1.0]), "tet4", RigidSection(300.0)),
+            Solid(name, section, np.array([0.0, 1.0]), "tet4", RigidSection(300.0, 1000.0)),
             "standard",
             1.0,
             follows,

@@ -49,7 +49,7 @@ def test_nothing_at_rest_and_stable_there(law: Law) -> None:
 
 def test_fibres_follow_hookes_law() -> None:
     """Under pressure alone the beam's own: nominal stress E (λ − 1), no Poisson coupling."""
-    law, stretch = RigidSection(300.0), 1.2
+    law, stretch = RigidSection(300.0, 1000.0), 1.2
     C = np.array([[1.0, 1.0, stretch**2, 0, 0, 0]])
     np.testing.assert_allclose(law.stress(C), [[0, 0, 300 * 0.2 / stretch, 0, 0, 0]], atol=1e-10)
     assert law.energy(C)[0] == pytest.approx(150 * 0.2**2)
@@ -62,4 +62,4 @@ def test_fibres_follow_hookes_law() -> None:
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
 def test_refused(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"{name} = {value}: must be above 0"):
-        RigidSection(**({"youngs_modulus": 300.0} | {name: value}))
+        RigidSection(**({"youngs_modulus": 300.0, "penalty": 1000.0} | {name: value}))
