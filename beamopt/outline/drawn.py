@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["drawn_regions"]
 
 
+NOTHING = 1e-6  # mm; radii below it have no arc
+
+
 def drawn_regions(shapes: Sequence[Shape], sagitta: float) -> tuple[Geometry, ...]:
     """For supplies 1, 2, 3 what is drawn of them; a later shape covers an earlier one."""
     import shapely
@@ -45,6 +48,7 @@ def _piece(shape: RingPiece, sagitta: float) -> Polygon:
     import shapely
 
     (inner, outer), (first, last) = shape.r, shape.phi
+    inner = inner if inner > NOTHING else 0.0
     between = angle_between(first, last)
     if between == 360:
         rim = circle(outer, sagitta)
@@ -70,7 +74,7 @@ def _side(shape: RingPiece, sagitta: float) -> FloatArray:
     A corner's circle has its centre `corner` from the side and touches the side and the arc.
     """
     (inner, outer), c = shape.r, shape.corner
-    if c == 0:
+    if c < NOTHING:
         return np.array([[inner, 0.0], [outer, 0.0]])
     ends = []
     for middle, from_side in ((inner + c, np.pi), (outer - c, 0.0)):

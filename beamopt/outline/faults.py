@@ -65,7 +65,10 @@ class Fault:
         return self.status.severity
 
     def __str__(self) -> str:
-        where = f" at ({self.place[0]:.1f}, {self.place[1]:.1f}) mm" if self.place else ""
+        where = ""
+        if self.place:
+            x, y = (round(value, 1) + 0.0 for value in self.place)  # no "−0.0"
+            where = f" at ({x:.1f}, {y:.1f}) mm"
         asked = f", asked {self.asked:g}" if self.asked is not None else ""
         return f"{self._subject()}{where.replace('-', '−')}{asked}"
 

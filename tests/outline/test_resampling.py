@@ -52,7 +52,7 @@ def test_a_rounded_triangle(radius: float) -> None:
     assert on_curve.max() < 1e-9
     assert shapely.Polygon(points).is_valid
     ratio = found / np.roll(found, 1)
-    assert max(ratio.max(), 1 / ratio.min()) < 3.0
+    assert max(ratio.max(), 1 / ratio.min()) < 6.0  # an edge grows by twice the way to the next
 
 
 def test_corners_stay() -> None:
