@@ -54,7 +54,7 @@ def _piece(shape: RingPiece, sagitta: float) -> Polygon:
         rim = circle(outer, sagitta)
         return shapely.Polygon(rim, [inner / outer * rim[::-1]] if inner > 0 else [])
     span = np.radians(between)
-    start = _side(shape, sagitta)
+    start = _side(inner, outer, shape.corner, sagitta)
     other = start[::-1] * [1.0, -1.0]  # the other side is the mirror image …
     cosine, sine = np.cos(span), np.sin(span)
     other = other @ np.array([[cosine, sine], [-sine, cosine]])  # … turned by the whole span
@@ -68,12 +68,11 @@ def _piece(shape: RingPiece, sagitta: float) -> Polygon:
     return shapely.Polygon(loop)
 
 
-def _side(shape: RingPiece, sagitta: float) -> FloatArray:
+def _side(inner: float, outer: float, c: float, sagitta: float) -> FloatArray:
     """(n, 2) the side along the x-axis, from the inner arc to the outer one, corners included.
 
-    A corner's circle has its centre `corner` from the side and touches the side and the arc.
+    A corner's circle has its centre c from the side and touches the side and the arc.
     """
-    (inner, outer), c = shape.r, shape.corner
     if c < NOTHING:
         return np.array([[inner, 0.0], [outer, 0.0]])
     ends = []
