@@ -83,9 +83,6 @@ def three_chamber_rows() -> Iterator[Row]:
     yield Row(
         "three chambers: error at c = 2500 over 10⁴", SOURCE, 4.0, _middle(first / second), 0.1
     )
-    for c, errors in ((2500, first), (10000, second)):
-        share = float((errors / fine.displacement[loaded]).max()) * c
-        yield Row(f"three chambers: c × error at c = {c}", SOURCE, 17.5, share, 3.0)
     error = np.linalg.norm(standard.final.tips - fine.final.tips, axis=1)[loaded]
     estimate = standard.discretisation[loaded]
     bound = float((error / np.maximum(estimate, 1e-4)).max())
