@@ -166,6 +166,14 @@ class Scene(Model):
         warnings = oddities(workspace.tips, levels, self.actuator.length)
         return Target(workspace, design.section, warnings)
 
+    @property
+    def wall_elements(self) -> int:
+        """Elements of a wall between supplies; none in a sealed section, whose walls are in mm.
+
+        An outline has no elements: with walls of both kinds the search would judge another section.
+        """
+        return 0 if self.seal.rules.sealed else self.section.wall_elements
+
     def random_points(self, rng: np.random.Generator) -> FeaturePoints:
         """A random genotype after this scene's rules."""
         rules = self.section
@@ -178,7 +186,7 @@ class Scene(Model):
         return Design.of_points(
             points,
             grid=self.grid,
-            wall_elements=self.section.wall_elements,
+            wall_elements=self.wall_elements,
             actuator=self.actuator,
             levels=self.pressures.levels,
             seal=self.seal,
@@ -189,7 +197,7 @@ class Scene(Model):
         """What candidates are judged with."""
         return Judge(
             grid=self.grid.build(),
-            wall_elements=self.section.wall_elements,
+            wall_elements=self.wall_elements,
             length=self.actuator.length,
             response_of=partial(linear_response, youngs_modulus=self.actuator.youngs_modulus),
             levels=self.pressures.levels,

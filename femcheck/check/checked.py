@@ -38,6 +38,7 @@ class Checked:
         compared = self.comparison
         return (
             compared is not None
+            and compared.moves
             and compared.unanswered == 0
             and compared.worst <= self.options.agree
         )

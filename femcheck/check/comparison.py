@@ -21,7 +21,8 @@ from femcheck.solid.elements import ELEMENTS
 
 __all__ = ["Comparison", "Tips", "compare"]
 
-SMALLEST_DISPLACEMENT = 1e-3  # of the length: below it a share of the displacement says nothing
+SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
+STILL = 1e-9  # mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +85,15 @@ class Comparison:
     def share(self) -> FloatArray:
         """(27,) difference over displacement.
 
-        Where the tip hardly moves, over a thousandth of the length.
+        Where the tip hardly moves, over a hundredth of the largest displacement.
         """
-        least = SMALLEST_DISPLACEMENT * self.subject.design.actuator.length
+        least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
         return np.asarray(self.difference / np.maximum(self.displacement, least))
+
+    @property
+    def moves(self) -> bool:
+        """Whether any tip moves, so that there is something to compare."""
+        return bool(self.displacement.max() > STILL)
 
     @property
     def discretisation(self) -> FloatArray:

@@ -35,6 +35,7 @@ NAMES = (
     "picture.log",
 )
 EARLY = ("cases", "design.json")  # what may be there before the marker
+OF_A_SOLID = ("compare.csv", "table.csv", "mesh.msh", "mesh.vtu", "picture.png", "picture.log")
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
 
 
@@ -84,7 +85,10 @@ class CheckFolder:
 
     def write(self, checked: Checked) -> None:
         """Write tables, meshes and the picture; each whole or not at all."""
-        if checked.comparison is not None:
+        if checked.comparison is None:
+            for name in OF_A_SOLID:  # of a check that had an answer before
+                (self.path / name).unlink(missing_ok=True)
+        else:
             write_atomic(self.path / "compare.csv", compare_csv(checked))
             write_atomic(self.path / "table.csv", table_csv(checked.comparison))
         write_atomic(self.path / "summary.json", json_text(summary(checked)))

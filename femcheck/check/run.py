@@ -119,7 +119,8 @@ def _stages(
 ) -> tuple[Stage, ...]:
     """The standard mesh with both penalties, the second led by the first; then the coarse one."""
     length = subject.design.actuator.length
-    layers = options.layers or layers_for(subject.largest_turn)
+    slenderness = length / subject.design.grid.outer_radius
+    layers = options.layers or layers_for(subject.largest_turn, slenderness)
     fewer = max(layers - max(layers // 3, 1), 1)
     stages: list[Stage] = []
     for mesh, section, count in (("standard", standard, layers), ("coarse", coarse, fewer)):

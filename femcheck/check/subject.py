@@ -119,7 +119,8 @@ def sealed_copy(name: str, design: Design, skin: float) -> Subject:
         raise ValueError(f"the design has a skin of {design.seal.skin:g} mm already; ask for more")
     seal = design.seal.sealed_by(skin)
     seal.check_fits(design.grid.build())
-    changes = {"seal": seal, "notes": {"sealed_copy_of": name}}
+    # walls in mm take the place of walls of elements, which an outline can not have
+    changes = {"seal": seal, "wall_elements": 0, "notes": {"sealed_copy_of": name}}
     sealed = design.model_copy(update=changes)
     sealed = Design.model_validate(sealed.model_dump(by_alias=True, exclude_none=True))
     moved = np.linalg.norm(sealed.workspace.tips - design.workspace.tips, axis=1)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from rich.markup import escape
 from rich.table import Table
 
 from beamopt.arrays import FloatArray
@@ -19,7 +20,7 @@ __all__ = ["report"]
 def report(checked: Checked, folder: Path) -> None:
     """Say what a check found."""
     subject = checked.subject
-    console.print(f"[bold]{subject.name}[/]")
+    console.print(f"[bold]{escape(subject.name)}[/]")
     for name, text in _lines(checked):
         console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)
     if checked.comparison is not None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import typer
+from rich.markup import escape
 
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import Design, load_design
@@ -65,7 +67,7 @@ def run_command(request: RunRequest) -> None:
 
 def _checked(subject: Subject, folder: Path, options: CheckOptions, request: RunRequest) -> Checked:
     with progress_bar("cases") as bar:
-        task = bar.add_task(subject.name, total=None, said="outline and meshes")
+        task = bar.add_task(escape(subject.name), total=None, said="outline and meshes")
 
         def show(done: int, total: int, said: str) -> None:
             bar.update(task, completed=done, total=total, said=said)
@@ -148,7 +150,8 @@ def _name(path: Path, design: Design) -> str:
     """A run's scene and seed; another design's file name."""
     scene, seed = design.notes.get("scene"), design.notes.get("seed")
     of_run = path.is_dir() or path.stem in ("best", "final")
-    if of_run and isinstance(scene, str) and isinstance(seed, int):
+    named = isinstance(scene, str) and re.fullmatch(r"[\w-]+", scene) and isinstance(seed, int)
+    if of_run and named:
         return f"{scene}-{seed}-final" if path.stem == "final" else f"{scene}-{seed}"
     return path.resolve().name if path.is_dir() else path.stem
 

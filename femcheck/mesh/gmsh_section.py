@@ -112,17 +112,21 @@ def _run(arguments: list[str], seconds: float) -> MeshFailure | None:
     if process.returncode != 0:
         last = said.strip().splitlines()[-1:] or [""]
         code = process.returncode
-        how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        how = f"signal {-code}" if code < 0 else f"exit code {code}"
+        with contextlib.suppress(ValueError):  # real-time signals have no name
+            how = signal.Signals(-code).name if code < 0 else how
         return MeshFailure(MeshProblem.CRASHED, f"{how} {last[0]}".strip())
     return None
 
 
 def _kill(process: subprocess.Popen[str]) -> None:
     if hasattr(os, "killpg"):
-        os.killpg(process.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # it has just ended by itself
+            os.killpg(process.pid, signal.SIGKILL)
     else:
         process.kill()
-    process.communicate()
+    with contextlib.suppress(subprocess.TimeoutExpired):  # a child of its own may hold the pipe
+        process.communicate(timeout=2.0)
 
 
 def _read(file: Path, outline: Outline) -> SectionMesh | MeshFailure:

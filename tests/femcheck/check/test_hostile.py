@@ -108,7 +108,8 @@ def test_no_chamber_at_all(tmp_path: Path) -> None:
     assert compared is not None
     assert compared.unanswered == 0
     np.testing.assert_allclose(compared.final.tips - [0, 0, 100], 0, atol=1e-9)
-    assert result.holds
+    assert not result.holds
+    assert verdict(result) == "nothing to compare: no tip moves at any pressure"
 
 
 def test_an_unsealed_one(tmp_path: Path) -> None:

@@ -132,7 +132,8 @@ def test_keys() -> None:
 
 
 def test_layers_follow_the_turn() -> None:
-    counts = [layers_for(turn) for turn in (0.0, 0.5, 1.0, 2.0, 3.0)]
+    counts = [layers_for(turn, 4.0) for turn in (0.0, 0.5, 1.0, 2.0, 3.0)]
     assert counts == sorted(counts)
     assert counts[0] >= 3
     assert counts[-1] >= 10
+    assert layers_for(0.1, 60.0) >= 20  # a slender one: no layer far longer than it is wide
