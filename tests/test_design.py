@@ -51,7 +51,7 @@ def test_a_sealed_design_survives_a_file(tmp_path: Path) -> None:
     assert json.loads(design.json())["seal"] == SEAL
     rules = SealRules(1.0, 0.9, 0.5, 3.0, True)
     points = FeaturePoints(**json.loads(design.json())["feature_points"])
-    expected = CrossSection.from_points(PolarGrid(), points, 4, rules).labels
+    expected = CrossSection.from_points(PolarGrid(), points, 0, rules).labels
     np.testing.assert_array_equal(read.section.labels, expected)
     unsealed = Scene().design_of(points).section.labels
     assert (unsealed[0] > 0).any()
