@@ -14,7 +14,8 @@ from femcheck.mesh.geo import SectionSizes, geo_script
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, MeshProblem
 from tests.femcheck import sections
 
-GMSH = [shutil.which("gmsh") or str(Path(sys.executable).with_name("gmsh"))]
+FOUND = shutil.which("gmsh")
+GMSH = [FOUND] if FOUND else [sys.executable, str(Path(sys.executable).with_name("gmsh"))]
 OUTLINE = sections.three_chambers(0.5)
 
 
