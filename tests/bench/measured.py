@@ -19,7 +19,8 @@ QUICK = bool(os.environ.get("BENCH_QUICK"))
 """Small sizes, to try a benchmark itself: its report is kept apart from the measured ones."""
 
 ROOT = Path(__file__).resolve().parents[2]
-REPORTS = ROOT / "runs" / "bench-quick" if QUICK else ROOT / "reports" / "bench"
+PARTIAL = QUICK or bool(os.environ.get("BENCH_PARTS"))  # must not replace a whole report
+REPORTS = ROOT / "runs" / "bench-quick" if PARTIAL else ROOT / "reports" / "bench"
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ FElupe (GPL) is no dependency: it is measured where it is installed, `pip instal
 found on PYTHONPATH; the row "felupe installed" says so. Best kept out of the environment:
 `pip install --target DIR --no-deps felupe tensortrax einsumt`, then PYTHONPATH=DIR.
 
-BENCH_QUICK=1 takes small sizes, to try the benchmark itself, and writes to runs/bench-quick/.
-BENCH_PARTS names parts to measure, of assembly, direct, growth, drawn, voronoi.
+BENCH_QUICK=1 takes small sizes, to try the benchmark itself; BENCH_PARTS names parts to measure, of
+assembly, direct, growth, drawn, voronoi. Either writes to runs/bench-quick/.
 BENCH_DESIGN names a sealed design or run folder to check in place of the one that is searched.
 """
 
