@@ -19,8 +19,8 @@ from femcheck.mesh.extrusion import Extrusion, extrude
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import Body, discretise, nodes_at
 from femcheck.solid.elements import ELEMENTS
-from femcheck.solid.equilibrium import Equilibrium
-from femcheck.solid.state import State, moved, rest_state
+from femcheck.solid.equilibrium import Equilibrium, actuator
+from femcheck.solid.state import State
 
 __all__ = ["Case", "CaseResult", "Solid", "rest_slopes", "solve_case", "stopped"]
 
@@ -130,7 +130,7 @@ def _workshop(solid: Solid) -> _Workshop:
         while len(_WORKSHOPS) >= MOST_WORKSHOPS:
             _WORKSHOPS.pop(next(iter(_WORKSHOPS)))
         body = solid.body()
-        kept = _Workshop(Equilibrium(body, solid.law), Shapes(body), direct_solver(solid.solver))
+        kept = _Workshop(actuator(body, solid.law), Shapes(body), direct_solver(solid.solver))
         _WORKSHOPS[solid.digest] = kept
     return replace(kept, problem=kept.problem.with_law(solid.law))
 
@@ -138,7 +138,7 @@ def _workshop(solid: Solid) -> _Workshop:
 def solve_case(case: Case) -> CaseResult:
     """Find the equilibrium; whatever happens, a result with a status."""
     shop = _workshop(case.solid)
-    start = case.start or (rest_state(shop.problem.body), np.zeros(3))
+    start = case.start or (shop.problem.rest(), np.zeros(3))
     guess = None if case.guess is None else shop.shapes.state(case.guess)
     steps = LoadSteps(seconds=case.seconds)
     outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
@@ -158,20 +158,18 @@ def rest_slopes(solid: Solid) -> FloatArray | None:
     None where the tangent at rest is singular.
     """
     shop = _workshop(solid)
-    problem, rest = shop.problem, rest_state(shop.problem.body)
+    problem, rest = shop.problem, shop.problem.rest()
     nothing = np.zeros(3)
     try:
         shop.solver.factor(problem.tangent(rest, nothing, problem.forces(rest, nothing)))
-        steps = [shop.solver.solve(problem.volume_gradient(rest, k)) for k in (1, 2, 3)]
+        steps = [shop.solver.solve(problem.volume_gradient(rest, one)) for one in np.eye(3)]
     except SingularMatrixError:
         return None
     undeformed = shop.shapes.of(rest)
     slopes = []
     for step in steps:
         small = 1e-4 / max(float(np.abs(step).max()), 1e-12)  # mm of the largest displacement
-        near = moved(
-            problem.body, rest, problem.free, small * step[:-6].reshape(-1, 3), small * step[-6:]
-        )
+        near = problem.moved(rest, small * step)
         slopes.append((shop.shapes.of(near) - undeformed) / small)
     return np.stack(slopes)
 

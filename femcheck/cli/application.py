@@ -108,6 +108,17 @@ def run_designs(
     )
 
 
+@app.command(name="laws")
+def show_laws() -> None:
+    """Print the laws with the sources of their constants, and differentiate each.
+
+    Ends with 1 if a stress or a stiffness is not the derivative that it should be.
+    """
+    from femcheck.cli.laws import laws_command
+
+    laws_command()
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run one command; returns the exit code."""
     return finish(app, "femcheck", arguments)

@@ -53,7 +53,7 @@ class LoadSteps:
         deadline = began + self.seconds
         spent = Statistics()
         tried = self.newton.solve(problem, guess or start[0], pressures, solver, deadline)
-        _add(spent, tried.statistics)
+        spent.add(tried.statistics)
         if tried.status is not Status.CONVERGED:
             tried = self._in_steps(problem, shapes, start, pressures, solver, deadline, spent)
         spent.seconds = time.perf_counter() - began
@@ -85,7 +85,7 @@ class LoadSteps:
             between = first + to * (pressures - first)
             guess = shapes.state(here + (to - at) * slope)
             tried = self.newton.solve(problem, guess, between, solver, deadline)
-            _add(spent, tried.statistics)
+            spent.add(tried.statistics)
             if tried.state is not None:
                 now = shapes.of(tried.state)
                 slope, here = (now - here) / (to - at), now
@@ -97,11 +97,3 @@ class LoadSteps:
             step *= self.shrink
             if tried.status is Status.TIME_OUT or step < self.smallest:
                 return Outcome(tried.status, None, at)
-
-
-def _add(total: Statistics, part: Statistics) -> None:
-    total.steps += part.steps
-    total.iterations += part.iterations
-    total.assembly_seconds += part.assembly_seconds
-    total.factor_seconds += part.factor_seconds
-    total.solve_seconds += part.solve_seconds

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from femcheck.continuation.control import Control, FixedLoad
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.solid.equilibrium import Equilibrium, Forces
-from femcheck.solid.state import State, moved
+from femcheck.solid.state import State
 
 __all__ = ["Newton"]
 
@@ -45,26 +46,40 @@ class Newton:
 
         deadline : of `time.perf_counter`, at which it gives up.
         """
+        return self.follow(problem, start, FixedLoad(pressures), solver, deadline)
+
+    def follow(
+        self,
+        problem: Equilibrium,
+        start: State,
+        control: Control,
+        solver: DirectSolver,
+        deadline: float = np.inf,
+    ) -> Outcome:
+        """The equilibrium near `start` at the pressures that the control settles on."""
         statistics = Statistics(steps=1)
         state = start
-        forces = _timed(problem, state, pressures, statistics)
-        if forces.least_volume_ratio <= 0:
+        forces = _timed(problem, state, control.pressures, statistics)
+        if not forces.least_volume_ratio > 0:
             return Outcome(Status.INVERTED, None, statistics=statistics)
         for _ in range(self.most_iterations):
             if time.perf_counter() > deadline:
                 return Outcome(Status.TIME_OUT, None, statistics=statistics)
             try:
-                step = _direction(problem, state, pressures, forces, solver, statistics)
+                step = _direction(problem, state, control, forces, solver, statistics)
             except SingularMatrixError:
                 return Outcome(Status.LINEAR_SOLVER, None, statistics=statistics)
-            share = _share(problem, state, pressures, forces, step)
+            share = _share(problem, state, control, forces, step)
             if share is None:
                 return Outcome(Status.INVERTED, None, statistics=statistics)
-            state = _after(problem, state, share * step)
-            forces = _timed(problem, state, pressures, statistics)
-            if share == 1 and np.abs(step[:-3]).max() <= self.tolerance:
+            state = problem.moved(state, share * step)
+            control.advance(share)
+            forces = _timed(problem, state, control.pressures, statistics)
+            if share == 1 and problem.support.extent(step)[0] <= self.tolerance:
                 residual = float(np.abs(forces.reduced).max())
                 negative = solver.negative_eigenvalues
+                if negative is not None:
+                    negative -= problem.hydrostatic_unknowns
                 return Outcome(Status.CONVERGED, state, 1.0, residual, negative, statistics)
         return Outcome(Status.STEP_TOO_SMALL, None, statistics=statistics)
 
@@ -81,43 +96,41 @@ def _timed(
 def _direction(
     problem: Equilibrium,
     state: State,
-    pressures: FloatArray,
+    control: Control,
     forces: Forces,
     solver: DirectSolver,
     statistics: Statistics,
 ) -> FloatArray:
     began = time.perf_counter()
-    tangent = problem.tangent(state, pressures, forces)
+    tangent = problem.tangent(state, control.pressures, forces)
     statistics.assembly_seconds += time.perf_counter() - began
     factored, solved = solver.factor_seconds, solver.solve_seconds
     solver.factor(tangent)
-    step = solver.solve(-forces.reduced)
+    step = control.step(problem, state, forces, solver)
     statistics.factor_seconds += solver.factor_seconds - factored
     statistics.solve_seconds += solver.solve_seconds - solved
     statistics.iterations += 1
-    turn = float(np.abs(step[-3:]).max())
-    return step if turn <= LARGEST_TURN else step * (LARGEST_TURN / turn)
-
-
-def _after(problem: Equilibrium, state: State, step: FloatArray) -> State:
-    return moved(problem.body, state, problem.free, step[:-6].reshape(-1, 3), step[-6:])
+    return step
 
 
 def _share(
-    problem: Equilibrium, state: State, pressures: FloatArray, forces: Forces, step: FloatArray
+    problem: Equilibrium, state: State, control: Control, forces: Forces, step: FloatArray
 ) -> float | None:
     """How much of a step to take: all of it, or halves until the potential falls as it should.
 
     A direction along which the potential rises leads to an equilibrium that is not its minimum;
-    it is followed as far as no element inverts. None: every share inverts an element.
+    it is followed as far as no element inverts, and so is every direction in the mixed form, whose
+    potential has no minimum, and where the pressures change with the step. None: every share
+    inverts an element.
     """
-    slope = float(forces.reduced @ step)
-    before = problem.potential(state, pressures)
+    minimises = control.is_fixed and problem.mixed is None
+    slope = float(forces.reduced @ step) if minimises else 0.0
+    before = problem.potential(state, control.pressures) if minimises else 0.0
     noise = ROUNDING * max(abs(before), 1.0)
-    share, intact = 1.0, None
+    turn = problem.support.extent(step)[1]
+    share, intact = min(1.0, LARGEST_TURN / max(turn, LARGEST_TURN)), None
     while share >= SHORTEST:
-        after = _after(problem, state, share * step)
-        energy = problem.potential(after, pressures)
+        energy = problem.potential(problem.moved(state, share * step), control.pressures)
         if np.isfinite(energy):
             intact = intact or share
             if slope >= 0 or energy - before <= SUFFICIENT * share * slope + noise:

@@ -14,6 +14,8 @@ class Status(Enum):
     """How a case ended; the value is the text shown to people."""
 
     CONVERGED = "converged"
+    LIMIT_POINT = "limit point"
+    BUCKLED = "buckled"
     INVERTED = "an element turned inside out"
     STEP_TOO_SMALL = "load steps became too small"
     LINEAR_SOLVER = "the linear solver found no solution"
@@ -31,6 +33,14 @@ class Statistics:
     assembly_seconds: float = 0.0
     factor_seconds: float = 0.0
     solve_seconds: float = 0.0
+
+    def add(self, part: Statistics) -> None:
+        """Add what a part of it cost; the whole time is measured by itself."""
+        self.steps += part.steps
+        self.iterations += part.iterations
+        self.assembly_seconds += part.assembly_seconds
+        self.factor_seconds += part.factor_seconds
+        self.solve_seconds += part.solve_seconds
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class Shapes:
         self._flat = flat
 
     def of(self, state: State) -> FloatArray:
-        """The shape of a state: turns and moves from plane to plane, then every node's warping."""
+        """Turns and moves from plane to plane, then every node's warping, then pressures."""
         turns, moves = [], []
         warping = np.empty_like(state.x)
         R_before, h_before = np.eye(3), self._origins[0]
@@ -46,13 +46,16 @@ class Shapes:
                 turns.append(_vector(R_before.T @ R))
                 moves.append(R_before.T @ (h - h_before) - step)
             R_before, h_before = R, h
-        return np.concatenate([np.ravel(turns), np.ravel(moves), warping.ravel()])
+        return np.concatenate(
+            [np.ravel(turns), np.ravel(moves), warping.ravel(), state.hydrostatic]
+        )
 
     def state(self, shape: FloatArray) -> State:
         """The state of a shape; the base is held and the tip face plane, whatever its warping."""
         count = 3 * (len(self._planes) - 1)
         turns, moves = (part.reshape(-1, 3) for part in np.split(shape[: 2 * count], 2))
-        warping = shape[2 * count :].reshape(-1, 3)
+        rest = shape[2 * count :]
+        warping, hydrostatic = rest[: self._flat.size].reshape(-1, 3), rest[self._flat.size :]
         x = np.empty_like(self._body.nodes)
         R, h = np.eye(3), self._origins[0]
         for k, nodes in enumerate(self._planes):
@@ -60,7 +63,7 @@ class Shapes:
                 h = h + R @ (moves[k - 1] + self._origins[k] - self._origins[k - 1])
                 R = R @ rotation(turns[k - 1])
             x[nodes] = h + (self._flat[nodes] + warping[nodes]) @ R.T
-        return placed(self._body, x, h, R)
+        return placed(self._body, x, h, R, hydrostatic)
 
 
 def _rigid_motion(flat: FloatArray, now: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -20,6 +20,20 @@ class Law(Protocol):
         """The name that files and reports use."""
         ...
 
+    @property
+    def text(self) -> str:
+        """The energy with its constants and how it treats volume, as reports print it."""
+        ...
+
+    @property
+    def volumetric_compliance(self) -> float | None:
+        """None if W is whole; else 1/Λ [1/kPa] of a two-field formulation, 0 if incompressible.
+
+        Of a two-field formulation energy, stress and stiffness leave the volumetric term out: to
+        them come p ln J − p²/(2Λ) with a pressure field p and its derivatives.
+        """
+        ...
+
     def energy(self, C: FloatArray) -> FloatArray:
         """W (n,) [kPa = mN mm/mm³] at C (n, 6)."""
         ...

@@ -47,7 +47,22 @@ class RigidSection:
         return "rigid-section"
 
     @property
-    def _G(self) -> float:
+    def text(self) -> str:
+        """The energy with its constants, as reports print it."""
+        return (
+            "E/2 (λ3 − 1)² + G/2 (C13² + C23²) + cE/8 [(C11 − 1)² + (C22 − 1)² + 2 C12²], "
+            f"λ3 = √C33, E = {self.youngs_modulus:g} kPa, G = {self.rigidity:g} kPa, "
+            f"c = {self.penalty:g}; volume is free, displacements only"
+        )
+
+    @property
+    def volumetric_compliance(self) -> None:
+        """None: the energy is whole."""
+        return
+
+    @property
+    def rigidity(self) -> float:
+        """G [kPa]: the shear modulus, given or cE/2."""
         given = self.shear_modulus
         return self.penalty * self.youngs_modulus / 2 if given is None else given
 
@@ -57,7 +72,7 @@ class RigidSection:
         stretch = np.sqrt(C[:, 2])
         plane = (C[:, 0] - 1) ** 2 + (C[:, 1] - 1) ** 2 + 2 * C[:, 3] ** 2
         shear = C[:, 4] ** 2 + C[:, 5] ** 2
-        return np.asarray(E / 2 * (stretch - 1) ** 2 + self._G / 2 * shear + cE / 8 * plane)
+        return np.asarray(E / 2 * (stretch - 1) ** 2 + self.rigidity / 2 * shear + cE / 8 * plane)
 
     def stress(self, C: FloatArray) -> FloatArray:
         """S (n, 6) [kPa]."""
@@ -66,7 +81,7 @@ class RigidSection:
         S[:, :2] = cE / 2 * (C[:, :2] - 1)
         S[:, 2] = E * (1 - 1 / np.sqrt(C[:, 2]))
         S[:, 3] = cE / 2 * C[:, 3]
-        S[:, 4:] = self._G * C[:, 4:]
+        S[:, 4:] = self.rigidity * C[:, 4:]
         return S
 
     def stiffness(self, C: FloatArray) -> FloatArray:
@@ -76,5 +91,5 @@ class RigidSection:
         D[:, 0, 0] = D[:, 1, 1] = cE
         D[:, 2, 2] = E * C[:, 2] ** -1.5
         D[:, 3, 3] = cE / 2
-        D[:, 4, 4] = D[:, 5, 5] = self._G
+        D[:, 4, 4] = D[:, 5, 5] = self.rigidity
         return D

@@ -1,4 +1,4 @@
-"""The discretised body: nodes, gradients at quadrature points, wall facets, both end faces."""
+"""The meshed actuator: an element on an extruded section, and which nodes both end faces hold."""
 
 from __future__ import annotations
 
@@ -6,45 +6,33 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray
 from femcheck.mesh.extrusion import Extrusion
+from femcheck.solid.continuum import Continuum
 from femcheck.solid.elements import ELEMENTS, ElementChoice
 from femcheck.solid.facets import FacetShape, facet_shape
 
-__all__ = ["Body", "discretise", "nodes_at"]
+__all__ = ["Body", "discretise", "linear_functions", "nodes_at", "surface_facets"]
 
 ON_NODE = 1e-6
 """Distance [mm] within which a facet's node is taken for a node of the mesh."""
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
-    """Everything about a meshed actuator that its equilibrium needs; arrays over scikit-fem's.
+class Body(Continuum):
+    """A meshed actuator.
 
     Parameters
     ----------
     extrusion : the volume mesh.
     element : name of the element.
-    nodes : (n, 3) undeformed positions [mm].
-    connectivity : (e, a) nodes of each element.
-    gradients : (e, q, 3, a) undeformed gradients of the shape functions [1/mm].
-    weights : (e, q) volumes that belong to the quadrature points [mm³].
-    walls : (f, b) nodes of each wall facet of a chamber.
-    wall_supply : (f,) 1…3.
-    facet : shape functions of a wall facet.
     base, tip : nodes of the clamped face and of the face that the tip plate holds.
     """
 
     extrusion: Extrusion
     element: str
-    nodes: FloatArray
-    connectivity: IndexArray
-    gradients: FloatArray
-    weights: FloatArray
-    walls: IndexArray
-    wall_supply: IndexArray
-    facet: FacetShape
     base: IndexArray
     tip: IndexArray
 
@@ -80,7 +68,8 @@ def discretise(extrusion: Extrusion, element: str = "wedge18") -> Body:
     nodes = np.ascontiguousarray(basis.doflocs[:, names].T)
     gradients = np.stack([basis.basis[k][0].grad for k in range(choice.functions)])
     z, length = nodes[:, 2], extrusion.length
-    walls, supply, shape = _walls(extrusion, choice, nodes)
+    chamber = extrusion.supply > 0
+    walls, quadrangle, shape = surface_facets(extrusion, choice, nodes, chamber)
     return Body(
         extrusion=extrusion,
         element=element,
@@ -89,8 +78,10 @@ def discretise(extrusion: Extrusion, element: str = "wedge18") -> Body:
         gradients=np.ascontiguousarray(gradients.transpose(2, 3, 1, 0)),
         weights=np.ascontiguousarray(basis.dx),
         walls=walls,
-        wall_supply=supply,
+        wall_supply=extrusion.supply[quadrangle],
         facet=shape,
+        corner_values=linear_functions(choice, basis.quadrature[0]),
+        has_pair=choice.has_pair,
         base=np.flatnonzero(z < ON_NODE),
         tip=np.flatnonzero(z > length - ON_NODE),
     )
@@ -106,17 +97,28 @@ def nodes_at(body: Body, places: FloatArray) -> IndexArray:
     return _nearest(body.nodes, places)
 
 
-def _walls(
-    extrusion: Extrusion, choice: ElementChoice, nodes: FloatArray
+def linear_functions(choice: ElementChoice, at: FloatArray) -> FloatArray:
+    """(q, c) linear functions of the corners at reference points (3, q)."""
+    import skfem
+
+    linear = getattr(skfem, choice.linear)()
+    values = [linear.lbasis(at, corner)[0] for corner in range(choice.corners)]
+    return np.stack([value * np.ones(at.shape[1]) for value in values], axis=1)
+
+
+def surface_facets(
+    extrusion: Extrusion, choice: ElementChoice, nodes: FloatArray, chosen: NDArray[np.bool_]
 ) -> tuple[IndexArray, IndexArray, FacetShape]:
-    """Nodes of the chambers' wall facets, found by place: facets are straight-edged."""
+    """Nodes (f, b) of the facets on chosen boundary quadrangles, and which quadrangle (f,) it is.
+
+    Found by place: facets are straight-edged.
+    """
     corners, quadrangle = choice.wall_corners(extrusion)
-    supply = extrusion.supply[quadrangle]
-    chosen = supply > 0
+    kept = chosen[quadrangle]
     shape = facet_shape(corners.shape[1], choice.wall_degree)
-    at = np.einsum("bc,fcx->fbx", shape.places, corners[chosen])
+    at = np.einsum("bc,fcx->fbx", shape.places, corners[kept])
     found = _nearest(nodes, at.reshape(-1, 3))
-    return found.reshape(at.shape[:2]), supply[chosen], shape
+    return found.reshape(at.shape[:2]), quadrangle[kept], shape
 
 
 def _nearest(nodes: FloatArray, at: FloatArray) -> IndexArray:

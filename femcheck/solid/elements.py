@@ -29,6 +29,10 @@ class ElementChoice:
     wall_degree : degree of the shape functions on a wall facet.
     tip_order : order in which the tip of a bending rod converges with the layers; None where it
         locks, and two meshes say nothing.
+    corners : how many corners it has.
+    linear : scikit-fem's linear element on the same corners.
+    has_pair : whether a hydrostatic pressure in the linear functions makes a stable pair with it
+        (Taylor and Hood's) for the mixed form.
     """
 
     name: str
@@ -37,6 +41,9 @@ class ElementChoice:
     wall_corners: Callable[[Extrusion], tuple[FloatArray, IndexArray]]
     wall_degree: int
     tip_order: float | None
+    corners: int
+    linear: str
+    has_pair: bool
 
 
 def _wedge18(body: Extrusion) -> Any:
@@ -100,11 +107,15 @@ def _triangles(body: Extrusion) -> tuple[FloatArray, IndexArray]:
 ELEMENTS = {
     choice.name: choice
     for choice in (
-        ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2, 4.0),
-        ElementChoice("hex27", _hex27, 27, _halves, 2, 4.0),
-        ElementChoice("tet10", _tetrahedra("ElementTetP2", 4), 10, _triangles, 2, 2.0),
-        ElementChoice("tet4", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1, None),
+        ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2, 4.0, 6, "ElementWedge1", True),
+        ElementChoice("hex27", _hex27, 27, _halves, 2, 4.0, 8, "ElementHex1", True),
+        ElementChoice(
+            "tet10", _tetrahedra("ElementTetP2", 4), 10, _triangles, 2, 2.0, 4, "ElementTetP1", True
+        ),
+        ElementChoice(
+            "tet4", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1, None, 4, "ElementTetP1", False
+        ),
     )
 }
 """By name. For comparison: hexahedra need six times the nodes for the same triangles, the quadratic
-tetrahedron comes slowly, the linear one locks."""
+tetrahedron comes slowly, the linear one locks and has no stable pair."""

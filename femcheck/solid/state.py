@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from femcheck.solid.plate import rotation
 
 __all__ = ["State", "moved", "placed", "rest_state"]
 
+NONE = np.zeros(0)
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -20,11 +22,14 @@ class State:
     x : (n, 3) positions of all nodes [mm]; those of the tip face follow from the plate.
     tip : (3,) position of the tip face's material centroid [mm].
     turn : (3, 3) rotation of the tip plate.
+    hydrostatic : (m,) hydrostatic pressure of the mixed form at the corners [kPa], positive in
+        tension; empty where there is none.
     """
 
     x: FloatArray
     tip: FloatArray
     turn: FloatArray
+    hydrostatic: FloatArray = field(default_factory=lambda: NONE)
 
 
 def rest_state(body: Body) -> State:
@@ -32,16 +37,20 @@ def rest_state(body: Body) -> State:
     return State(body.nodes.copy(), body.tip_centre.copy(), np.eye(3))
 
 
-def placed(body: Body, x: FloatArray, tip: FloatArray, turn: FloatArray) -> State:
+def placed(
+    body: Body, x: FloatArray, tip: FloatArray, turn: FloatArray, hydrostatic: FloatArray = NONE
+) -> State:
     """The state with inner nodes at `x`, the base held and the tip face on its plate."""
     at = x.copy()
     at[body.base] = body.nodes[body.base]
     at[body.tip] = tip + (body.nodes[body.tip] - body.tip_centre) @ turn.T
-    return State(at, tip, turn)
+    return State(at, tip, turn, hydrostatic)
 
 
-def moved(body: Body, state: State, free: IndexArray, step: FloatArray, plate: FloatArray) -> State:
-    """The state after moving the nodes `free` (k,) by `step` (k, 3) and the plate by (6,)."""
-    x = state.x.copy()
-    x[free] += step
-    return placed(body, x, state.tip + plate[:3], rotation(plate[3:]) @ state.turn)
+def moved(body: Body, state: State, free: IndexArray, step: FloatArray) -> State:
+    """The state after a step (3 k + 6 + m,): free nodes (k,), the plate, hydrostatic pressures."""
+    x, plate = state.x.copy(), 3 * free.size
+    x[free] += step[:plate].reshape(-1, 3)
+    tip, turn = state.tip + step[plate : plate + 3], rotation(step[plate + 3 : plate + 6])
+    hydrostatic = state.hydrostatic + step[plate + 6 :]
+    return placed(body, x, tip, turn @ state.turn, hydrostatic)

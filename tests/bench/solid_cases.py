@@ -15,7 +15,7 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import discretise
-from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State, rest_state
 
 __all__ = ["LENGTH", "LOAD", "loaded", "problem_of", "section_of", "three_chambers"]
@@ -52,7 +52,7 @@ def section_of(factor: float) -> SectionMesh:
 def problem_of(section: SectionMesh, layers: int, penalty: float = 2500.0) -> Equilibrium:
     """The actuator of 18-node wedges in the rigid-section law."""
     body = discretise(extrude(section, stations(LENGTH, layers, 1.5)))
-    return Equilibrium(body, RigidSection(300.0, penalty))
+    return actuator(body, RigidSection(300.0, penalty))
 
 
 def loaded(problem: Equilibrium) -> tuple[State, DirectSolver]:

@@ -11,7 +11,7 @@ from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
-from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State, rest_state
 from tests.femcheck.lattice import SOFT, bent_state, lattice_body
 
@@ -21,7 +21,7 @@ LOAD = np.array([40.0, 0.0, 15.0])
 
 @pytest.fixture(scope="module")
 def problem() -> Equilibrium:
-    return Equilibrium(lattice_body("wedge18"), LAW)
+    return actuator(lattice_body("wedge18"), LAW)
 
 
 class Watched:

@@ -13,7 +13,7 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import discretise
-from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import rest_state
 from tests.femcheck.sections import three_chambers
 
@@ -30,7 +30,7 @@ def section() -> SectionMesh:
 def bending(section: SectionMesh, element: str) -> tuple[float, float]:
     """Sideways way of the tip over the beam's, and distance of the tips over the beam's way."""
     body = discretise(extrude(section, stations(LENGTH, 4, 1.5)), element)
-    problem = Equilibrium(body, RigidSection(E, 10000.0))
+    problem = actuator(body, RigidSection(E, 10000.0))
     outcome = Newton().solve(problem, rest_state(body), KPA, direct_solver())
     assert outcome.state is not None
     found = outcome.state.tip - np.append(section.moments.centroid, 0.0)

@@ -1,0 +1,168 @@
+"""What the isotropic laws share: moduli, the choice of formulation, stress and stiffness."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.errors import InputError
+from femcheck.material.invariant_kernels import fill_stiffness, fill_stress
+from femcheck.material.tensors import invariants
+
+__all__ = ["Isotropic", "Moduli", "require"]
+
+MIXED_ABOVE = 0.45
+"""Poisson's ratio above which displacements alone would lock and the mixed form is taken."""
+
+
+class Moduli(NamedTuple):
+    """C1 and C2 [kPa]: derivatives of W by I1 and I2 at rest; bend: the second by I1 there."""
+
+    C1: float
+    C2: float
+    bend: float
+
+
+def require(key: str, value: float, holds: bool, allowed: str) -> None:
+    """Raise InputError unless the value is finite and `holds`."""
+    if not (math.isfinite(value) and holds):
+        raise InputError("", key, value, allowed)
+
+
+@dataclass(frozen=True)
+class Isotropic(ABC):
+    """W = f(I1) + C2 (I2 − 3) − (2 C1 + 4 C2) ln J + Λ/2 (ln J)², C1 = f′(3), invariants of C.
+
+    E and ν are those of small strains: μ = E/(2 (1 + ν)) = 2 (C1 + C2), and Λ is what
+    λ = 2 μ ν/(1 − 2 ν) leaves, Λ = λ − 4 C2 − 4 f″(3). In the mixed form the last term is left to
+    a pressure field.
+
+    Parameters
+    ----------
+    youngs_modulus : E [kPa].
+    poisson_ratio : ν, 0 … 0.5.
+    mixed : whether in the mixed form; None takes it if ν > 0.45.
+
+    Raises
+    ------
+    InputError (a ValueError) : a value that can not be used, with what is allowed.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float = 0.5
+    mixed: bool | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        E, nu = self.youngs_modulus, self.poisson_ratio
+        require("youngs_modulus", E, E > 0, "above 0 kPa")
+        require("poisson_ratio", nu, 0 <= nu <= 0.5, "0 … 0.5")
+        self._check_shape()
+        if self.volumetric_modulus < 0:
+            taken = 4 * (self.moduli.C2 + self.moduli.bend)
+            least = taken / (2 * (taken + self.shear_modulus))
+            raise InputError("", "poisson_ratio", nu, f"{least:.4g} … 0.5 with these constants")
+        if self.mixed is False and nu == 0.5:
+            said = "an incompressible law (poisson_ratio = 0.5) takes the mixed form: True or none"
+            raise InputError("", "mixed", self.mixed, said)
+        if self.mixed and self.volumetric_modulus == 0:
+            said = f"with poisson_ratio = {nu:g} there is no volumetric term to mix: False or none"
+            raise InputError("", "mixed", self.mixed, said)
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """The name that files and reports use."""
+
+    @property
+    @abstractmethod
+    def moduli(self) -> Moduli:
+        """Derivatives of W at rest."""
+
+    @property
+    @abstractmethod
+    def _symbols(self) -> str:
+        """The energy without its volumetric term; the constants with their values."""
+
+    @abstractmethod
+    def _check_shape(self) -> None:
+        """Refuse constants that can not be used."""
+
+    @abstractmethod
+    def _stretching(self, x: FloatArray) -> FloatArray:
+        """The energy f (n,) by x = I1 − 3; NaN or ∞ where there is none."""
+
+    @abstractmethod
+    def _slopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """f′ and f″ (n,) by x = I1 − 3."""
+
+    @property
+    def shear_modulus(self) -> float:
+        """μ [kPa]."""
+        return self.youngs_modulus / (2 * (1 + self.poisson_ratio))
+
+    @property
+    def lame_modulus(self) -> float:
+        """λ of small strains [kPa]; ∞ if incompressible."""
+        gap = 1 - 2 * self.poisson_ratio
+        return 2 * self.shear_modulus * self.poisson_ratio / gap if gap > 0 else math.inf
+
+    @property
+    def volumetric_modulus(self) -> float:
+        """Λ [kPa], the factor of ½ (ln J)²; ∞ if incompressible."""
+        return self.lame_modulus - 4 * (self.moduli.C2 + self.moduli.bend)
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether a pressure field stands for the volumetric term."""
+        return self.poisson_ratio > MIXED_ABOVE if self.mixed is None else self.mixed
+
+    @property
+    def volumetric_compliance(self) -> float | None:
+        """1/Λ [1/kPa] in the mixed form, 0 if incompressible; None in displacements alone."""
+        return 1 / self.volumetric_modulus if self.is_mixed else None
+
+    @property
+    def text(self) -> str:
+        """The energy with its constants and how it treats volume, as reports print it."""
+        modulus = self.volumetric_modulus
+        if math.isinf(modulus):
+            return f"{self._symbols}; incompressible, mixed displacement–pressure"
+        how = "mixed displacement–pressure" if self.is_mixed else "displacements only"
+        return f"{self._symbols}; Λ/2 (ln J)², Λ = {modulus:.4g} kPa, {how}"
+
+    def energy(self, C: FloatArray) -> FloatArray:
+        """W (n,) [kPa] at C (n, 6); +∞ where the law has none."""
+        x, y, log_ratio = invariants(C)
+        with np.errstate(all="ignore"):
+            W = self._stretching(x) + self.moduli.C2 * y - self._at_rest * log_ratio
+            W += self._own_modulus / 2 * log_ratio**2
+        return np.where(np.isnan(W), np.inf, W)
+
+    def stress(self, C: FloatArray) -> FloatArray:
+        """S (n, 6) [kPa]."""
+        slope, _ = self._slopes(C[:, :3].sum(axis=1) - 3)
+        S = np.empty_like(C)
+        fill_stress(C, slope, self.moduli.C2, self._at_rest, self._own_modulus, S)
+        return S
+
+    def stiffness(self, C: FloatArray) -> FloatArray:
+        """∂S/∂E (n, 6, 6) [kPa]."""
+        _, bend = self._slopes(C[:, :3].sum(axis=1) - 3)
+        D = np.empty((len(C), 6, 6))
+        fill_stiffness(C, bend, self.moduli.C2, self._at_rest, self._own_modulus, D)
+        return D
+
+    @property
+    def _at_rest(self) -> float:
+        """2 C1 + 4 C2: what −ln J takes so that there is no stress at rest."""
+        return 2 * self.moduli.C1 + 4 * self.moduli.C2
+
+    @property
+    def _own_modulus(self) -> float:
+        """Λ if the law has the volumetric term itself."""
+        return 0.0 if self.is_mixed else self.volumetric_modulus
