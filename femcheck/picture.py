@@ -18,18 +18,22 @@ from beamopt.arrays import FloatArray
 from beamopt.files import write_atomic
 from beamopt.plot.style import SUPPLY_COLOURS
 from beamopt.rod.arc import arc_centreline
-from femcheck.check.checked import Checked
+from femcheck.check.case import Solid
+from femcheck.check.subject import Subject
 
 __all__ = ["draw"]
 
 SECONDS = 180.0
 
 
-def draw(folder: Path, checked: Checked) -> bool:
-    """Write `picture.png`; False where drawing failed, with what it said in `picture.log`."""
-    scene = _scene(checked)
-    if scene is None:
-        return False
+def draw(
+    folder: Path, subject: Subject, solid: Solid, x: FloatArray, pressures: FloatArray, said: str
+) -> bool:
+    """Write `picture.png`; False where drawing failed, with what it said in `picture.log`.
+
+    x : (n, 3) deformed nodes [mm] at pressures (3,) [kPa]. said : what the title adds.
+    """
+    scene = _scene(subject, solid, x, pressures, said)
     with tempfile.TemporaryDirectory(prefix="femcheck-") as temporary:
         data, image = Path(temporary) / "scene.npz", Path(temporary) / "picture.png"
         np.savez(data, allow_pickle=False, **scene)
@@ -51,30 +55,18 @@ def draw(folder: Path, checked: Checked) -> bool:
     return True
 
 
-def _scene(checked: Checked) -> dict[str, Any] | None:
-    """What is to be seen: the case with the largest displacement that has an answer."""
-    compared = checked.comparison
-    assert compared is not None
-    stage = [one for one in checked.stages if one.mesh == "standard"][-1]
-    solved = ~np.isnan(compared.solid(stage.mesh, stage.penalty).tips[:, 0])
-    if not (solved & compared.is_loaded).any():
-        return None
-    row = int(np.argmax(np.where(solved & compared.is_loaded, compared.displacement, -1.0)))
-    node = (row // 9, row // 3 % 3, row % 3)
-    state = checked.results[stage.name, node].outcome.state
-    assert state is not None
-    shown = stage.solid.shown()
-    subject = checked.subject
-    length = subject.design.actuator.length
-    strains = subject.response.strains(subject.pressures[row : row + 1])
-    line = arc_centreline(strains, np.linspace(0, length, 60))[0]
-    centroid = np.append(stage.solid.section.moments.centroid, 0.0)
-    pressures = ", ".join(f"{value:g}" for value in subject.pressures[row])
-    section = stage.solid.section
+def _scene(
+    subject: Subject, solid: Solid, x: FloatArray, pressures: FloatArray, said: str
+) -> dict[str, Any]:
+    """The body at rest and deformed, the beam's line, and the section."""
+    shown, section = solid.shown(), solid.section
+    strains = subject.response.strains(pressures[None])
+    line = arc_centreline(strains, np.linspace(0, subject.design.actuator.length, 60))[0]
     chambers = subject.outline.chambers
+    title = f"{subject.name} at {', '.join(f'{value:.4g}' for value in pressures)} kPa"
     return {
         "rest": shown.extrusion.points,
-        "now": state.x[shown.nodes],
+        "now": x[shown.nodes],
         "walls": shown.extrusion.walls,
         "supply": shown.extrusion.supply,
         "chamber_places": np.array([_inside(one.exterior) for one in chambers]),
@@ -83,12 +75,9 @@ def _scene(checked: Checked) -> dict[str, Any] | None:
         "section": section.points,
         "edges": section.edges,
         "edge_supply": section.supply,
-        "line": line + centroid,
+        "line": line + np.append(section.moments.centroid, 0.0),
         "colours": np.array(SUPPLY_COLOURS),
-        "title": np.array(
-            f"{subject.name} at {pressures} kPa: tip moves {compared.displacement[row]:.1f} mm, "
-            f"beam and solid differ by {compared.difference[row]:.3f} mm"
-        ),
+        "title": np.array(f"{title}: {said}"),
     }
 
 

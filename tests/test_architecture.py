@@ -41,6 +41,7 @@ FLOORS = [
     ["femcheck.solid"],
     ["femcheck.continuation"],
     ["femcheck.check", "femcheck.picture"],
+    ["femcheck.prediction"],
     ["femcheck.cli"],
     ["femcheck"],
 ]

@@ -14,6 +14,7 @@ from femcheck.continuation.direct import DirectSolver, SingularMatrixError, dire
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
+from femcheck.material.fibre import Thread
 from femcheck.material.law import Law
 from femcheck.mesh.extrusion import Extrusion, extrude
 from femcheck.mesh.section_mesh import SectionMesh
@@ -21,8 +22,18 @@ from femcheck.solid.body import Body, discretise, nodes_at
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State
+from femcheck.solid.winding import Wound, wind
 
-__all__ = ["Case", "CaseResult", "Solid", "rest_slopes", "solve_case", "stopped"]
+__all__ = [
+    "Case",
+    "CaseResult",
+    "Solid",
+    "Workshop",
+    "rest_slopes",
+    "solve_case",
+    "stopped",
+    "workshop",
+]
 
 
 class Shown(NamedTuple):
@@ -42,6 +53,7 @@ class Solid:
     element : name of the element.
     law : the material.
     solver : "auto", "pardiso" or "superlu".
+    wound : which surfaces are wound with what thread; None where none is.
     """
 
     name: str
@@ -50,6 +62,7 @@ class Solid:
     element: str
     law: Law
     solver: str = "auto"
+    wound: tuple[Wound, Thread] | None = None
 
     def body(self) -> Body:
         """Its discretisation."""
@@ -67,7 +80,8 @@ class Solid:
     @cached_property
     def digest(self) -> str:
         """Tells discretisations apart; solids of the same mesh and other laws share it."""
-        state = hashlib.blake2b(f"{self.element} {self.solver}".encode(), digest_size=16)
+        said = f"{self.element} {self.solver}" + (f" {self.wound}" if self.wound else "")
+        state = hashlib.blake2b(said.encode(), digest_size=16)
         section = self.section
         for array in (section.points, section.triangles, section.edges, section.supply):
             state.update(np.ascontiguousarray(array).tobytes())
@@ -111,33 +125,35 @@ class CaseResult:
 
 
 @dataclass(frozen=True, eq=False)
-class _Workshop:
-    """What one process keeps of a solid between cases."""
+class Workshop:
+    """What one process keeps of a solid between tasks."""
 
     problem: Equilibrium
     shapes: Shapes
     solver: DirectSolver
 
 
-_WORKSHOPS: dict[str, _Workshop] = {}
+_WORKSHOPS: dict[str, Workshop] = {}
 MOST_WORKSHOPS = 2  # factors are large; a check goes back and forth between two meshes at most
 
 
-def _workshop(solid: Solid) -> _Workshop:
+def workshop(solid: Solid) -> Workshop:
     """Built once a process and a mesh; laws of one mesh share the pattern and its analysis."""
     kept = _WORKSHOPS.get(solid.digest)
     if kept is None:
         while len(_WORKSHOPS) >= MOST_WORKSHOPS:
             _WORKSHOPS.pop(next(iter(_WORKSHOPS)))
         body = solid.body()
-        kept = _Workshop(actuator(body, solid.law), Shapes(body), direct_solver(solid.solver))
+        winding = wind(body, *solid.wound) if solid.wound else None
+        problem = actuator(body, solid.law, winding)
+        kept = Workshop(problem, Shapes(body), direct_solver(solid.solver))
         _WORKSHOPS[solid.digest] = kept
     return replace(kept, problem=kept.problem.with_law(solid.law))
 
 
 def solve_case(case: Case) -> CaseResult:
     """Find the equilibrium; whatever happens, a result with a status."""
-    shop = _workshop(case.solid)
+    shop = workshop(case.solid)
     start = case.start or (shop.problem.rest(), np.zeros(3))
     guess = None if case.guess is None else shop.shapes.state(case.guess)
     steps = LoadSteps(seconds=case.seconds)
@@ -157,7 +173,7 @@ def rest_slopes(solid: Solid) -> FloatArray | None:
 
     None where the tangent at rest is singular.
     """
-    shop = _workshop(solid)
+    shop = workshop(solid)
     problem, rest = shop.problem, shop.problem.rest()
     nothing = np.zeros(3)
     try:

@@ -1,67 +1,50 @@
-"""The folder of one check: the design, solved cases, tables, meshes, picture."""
+"""The folder of one verdict: the design, what was solved, tables, meshes, picture."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import read_json
 from beamopt.provenance import provenance
-from femcheck.check.checked import Checked
-from femcheck.check.options import CheckOptions
+from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
-from femcheck.check.tables import compare_csv, summary, table_csv, timing_csv
 
 __all__ = ["CheckFolder"]
 
 MARKER = "check.json"
-NAMES = (
-    MARKER,
-    "design.json",
-    "compare.csv",
-    "table.csv",
-    "summary.json",
-    "timing.csv",
-    "provenance.json",
-    "mesh.msh",
-    "mesh.vtu",
-    "picture.png",
-    "picture.log",
-)
+COMMON = (MARKER, "design.json", "compare.csv", "summary.json", "timing.csv", "provenance.json")
+PICTURES = ("mesh.msh", "mesh.vtu", "picture.png", "picture.log")
 EARLY = ("cases", "design.json")  # what may be there before the marker
-OF_A_SOLID = ("compare.csv", "table.csv", "mesh.msh", "mesh.vtu", "picture.png", "picture.log")
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
 
 
-@dataclass(frozen=True, slots=True)
 class CheckFolder:
-    """The files of a check."""
+    """The folder of one verdict on one design."""
 
-    path: Path
+    def __init__(self, path: Path) -> None:
+        self.path = path
 
     @classmethod
     def open(
-        cls, path: Path, subject: Subject, options: CheckOptions, *, resume: bool
+        cls, path: Path, subject: Subject, question: Mapping[str, object], *, resume: bool
     ) -> CheckFolder:
         """Make the folder, or with `resume` take the one there.
 
+        question : what must be the same for what is there to be gone on with.
+
         Raises
         ------
-        InputError : it holds something already, or the check of another design or question.
+        InputError : it holds something already, or another design's verdict or question's.
         """
         claim_folder(path, MARKER, EARLY, resume=resume)
-        clear_leftovers(path, NAMES)
-        asked = {
-            "schema": "femcheck/1",
-            "design": subject.name,
-            "question": options.question,
-        }
+        asked = {"schema": "femcheck/1", "design": subject.name, "question": dict(question)}
         there = path / MARKER
         if there.exists():
             kept = read_json(there)
@@ -80,36 +63,34 @@ class CheckFolder:
 
     @property
     def cases(self) -> Path:
-        """Solved cases, one file each."""
+        """What was solved, one file each."""
         return self.path / "cases"
 
-    def write(self, checked: Checked) -> None:
-        """Write tables, meshes and the picture; each whole or not at all."""
-        if checked.comparison is None:
-            for name in OF_A_SOLID:  # of a check that had an answer before
+    def write(self, files: Mapping[str, str | None]) -> None:
+        """Write texts by file name, each whole or not at all; None takes a file away."""
+        clear_leftovers(self.path, (*COMMON, *PICTURES, *files))
+        for name, text in files.items():
+            if text is None:
                 (self.path / name).unlink(missing_ok=True)
-        else:
-            write_atomic(self.path / "compare.csv", compare_csv(checked))
-            write_atomic(self.path / "table.csv", table_csv(checked.comparison))
-        write_atomic(self.path / "summary.json", json_text(summary(checked)))
-        write_atomic(self.path / "timing.csv", csv_text("what,value,unit", timing_csv(checked)))
+            else:
+                write_atomic(self.path / name, text)
         write_atomic(self.path / "provenance.json", json_text(provenance(PACKAGES)))
-        if checked.comparison is not None:
-            self._write_meshes(checked)
 
-    def _write_meshes(self, checked: Checked) -> None:
+    def write_meshes(self, solid: Solid, states: Mapping[str, FloatArray]) -> None:
+        """Write the undeformed mesh, and below `deformed` positions of its nodes by name."""
         from femcheck.mesh.files import write_deformed, write_mesh
 
-        stage = [one for one in checked.stages if one.mesh == "standard"][-1]
-        write_mesh(self.path, stage.solid.body().extrusion)
-        shown = stage.solid.shown()
+        shown = solid.shown()
+        write_mesh(self.path, solid.body().extrusion)
         deformed = self.path / "deformed"
         deformed.mkdir(exist_ok=True)
-        for (name, node), result in checked.results.items():
-            if name == stage.name and result.outcome.state is not None:
-                levels = [checked.subject.design.pressures[index] for index in node]
-                file = deformed / f"{'-'.join(f'{level:g}' for level in levels)}.vtu"
-                write_deformed(file, shown.extrusion, result.outcome.state.x[shown.nodes])
+        for name, x in states.items():
+            write_deformed(deformed / f"{name}.vtu", shown.extrusion, x[shown.nodes])
+
+    def without_answer(self) -> None:
+        """Take away pictures and meshes of a verdict that had an answer before."""
+        for name in PICTURES:
+            (self.path / name).unlink(missing_ok=True)
 
 
 def _differences(before: Any, now: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 import femcheck.picture as picture
 from beamopt.study.pool import processes
@@ -15,22 +16,23 @@ from femcheck.check.checked import Checked
 from femcheck.check.comparison import compare
 from femcheck.check.folder import CheckFolder
 from femcheck.check.kept import read_case, write_case
+from femcheck.check.meshes import heights_of, section_meshes
 from femcheck.check.options import CheckOptions
-from femcheck.check.schedule import Key, Schedule, solve_all
-from femcheck.check.stage import Stage, layers_for
+from femcheck.check.schedule import Key, Schedule
+from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject, geometry_steps
+from femcheck.check.tables import tables_of
+from femcheck.check.work import solve_all
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
-from femcheck.mesh.extrusion import stations
-from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
+from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import quality_of
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["check_design"]
 
 AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a check that goes on tries these once more
-COARSER = 1.6  # sizes of the coarse section mesh over those of the standard one
 
 Progress = Callable[[int, int, str], None]
 Pool = Callable[[int], AbstractContextManager[Executor]]
@@ -60,11 +62,11 @@ def check_design(
     ------
     InputError : `out` holds something else, or can not be written.
     """
-    folder = CheckFolder.open(out, subject, options, resume=resume)
-    sections = _sections(subject, options)
+    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    sections = section_meshes(subject, options)
     if isinstance(sections, MeshFailure):
         checked = Checked(subject, options, sections, None, None, None, (), {})
-        folder.write(checked)
+        _write(folder, checked)
         return checked
     stages = _stages(subject, options, *sections)
     schedule = Schedule(stages, subject.design.pressures, options.seconds)
@@ -84,9 +86,35 @@ def check_design(
     geometry = geometry_steps(subject, sections[0])
     quality = quality_of(subject.outline, sections[0])
     checked = Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
-    folder.write(checked)
-    picture.draw(folder.path, checked)
+    _write(folder, checked)
     return checked
+
+
+def _write(folder: CheckFolder, checked: Checked) -> None:
+    """Tables, meshes, and the picture of the case with the largest displacement."""
+    folder.write(tables_of(checked))
+    compared = checked.comparison
+    if compared is None:
+        folder.without_answer()
+        return
+    stage = [one for one in checked.stages if one.mesh == "standard"][-1]
+    levels = checked.subject.design.pressures
+    states = {
+        "-".join(f"{levels[index]:g}" for index in node): result.outcome.state.x
+        for (name, node), result in checked.results.items()
+        if name == stage.name and result.outcome.state is not None
+    }
+    folder.write_meshes(stage.solid, states)
+    solved = ~np.isnan(compared.solid(stage.mesh, stage.penalty).tips[:, 0]) & compared.is_loaded
+    if solved.any():
+        row = int(np.argmax(np.where(solved, compared.displacement, -1.0)))
+        pressures = compared.subject.pressures[row]
+        said = (
+            f"tip moves {compared.displacement[row]:.1f} mm, "
+            f"beam and solid differ by {compared.difference[row]:.3f} mm"
+        )
+        shown = states["-".join(f"{value:g}" for value in pressures)]
+        picture.draw(folder.path, checked.subject, stage.solid, shown, pressures, said)
 
 
 def _take_kept(folder: Path, schedule: Schedule) -> None:
@@ -99,37 +127,18 @@ def _take_kept(folder: Path, schedule: Schedule) -> None:
                 schedule.results[key] = known
 
 
-def _sections(
-    subject: Subject, options: CheckOptions
-) -> tuple[SectionMesh, SectionMesh] | MeshFailure:
-    """The standard and the coarse section mesh."""
-    fatal = subject.fatal
-    if fatal is not None:
-        return MeshFailure(MeshProblem.FATAL, str(fatal))
-    standard = options.mesher.mesh(subject.outline, options.sizes)
-    if isinstance(standard, MeshFailure):
-        return standard
-    sizes = replace(options.sizes, factor=COARSER * options.sizes.factor)
-    coarse = options.mesher.mesh(subject.outline, sizes)
-    return coarse if isinstance(coarse, MeshFailure) else (standard, coarse)
-
-
 def _stages(
     subject: Subject, options: CheckOptions, standard: SectionMesh, coarse: SectionMesh
 ) -> tuple[Stage, ...]:
     """The standard mesh with both penalties, the second led by the first; then the coarse one."""
-    length = subject.design.actuator.length
-    slenderness = length / subject.design.grid.outer_radius
-    layers = options.layers or layers_for(subject.largest_turn, slenderness)
-    fewer = max(layers - max(layers // 3, 1), 1)
     stages: list[Stage] = []
-    for mesh, section, count in (("standard", standard, layers), ("coarse", coarse, fewer)):
-        heights = stations(length, count, options.grading)
+    heights = heights_of(subject, options)
+    for mesh, section in (("standard", standard), ("coarse", coarse)):
         before = None
         for c in options.penalties:
             law = RigidSection(subject.design.actuator.youngs_modulus, c)
             name = f"{mesh}-c{c:g}"
-            solid = Solid(name, section, heights, options.element, law, options.solver)
+            solid = Solid(name, section, heights[mesh], options.element, law, options.solver)
             stages.append(Stage(solid, mesh, c, before))
             before = name
     return tuple(stages)

@@ -1,14 +1,10 @@
-"""All cases of all stages, each as soon as what predicts it is known.
-
-On any executor whose workers are processes, or one thread: a worker keeps factors between cases.
-"""
+"""All cases of all stages, each as soon as what predicts it is known."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,7 +16,7 @@ from femcheck.check.stage import Stage
 from femcheck.continuation.pressure_tree import Node, all_nodes, ancestors, prediction
 from femcheck.solid.state import State
 
-__all__ = ["Key", "Schedule", "solve_all"]
+__all__ = ["Key", "Schedule"]
 
 Key = tuple[str, Node]
 """A case: the name of its stage, and its node of the pressure tree."""
@@ -69,6 +65,27 @@ class Schedule:
     def _is_known(self, name: str, source: Node | int) -> bool:
         return name in self.slopes if isinstance(source, int) else (name, source) in self.results
 
+    def begin(self, executor: Executor, waiting: Sequence[Key]) -> bool:
+        """Find the slopes at rest of all stages begun; False where a process died of it."""
+        begun = {key[0] for key in waiting}
+        begun |= {stage.follows for stage in self.stages if stage.name in begun and stage.follows}
+        for stage in self.stages:
+            if stage.name in begun and stage.name not in self.slopes:
+                try:
+                    self.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
+                except BrokenProcessPool:
+                    self.slopes[stage.name] = None  # its cases start without a prediction
+                    return False
+        return True
+
+    def submit(self, executor: Executor, key: Key) -> Future[CaseResult]:
+        """Have a case solved."""
+        return executor.submit(solve_case, self.case(key))
+
+    def stopped(self, key: Key) -> CaseResult:
+        """The result of a case whose process died."""
+        return stopped()
+
     def case(self, key: Key) -> Case:
         """The case with its guess and its start."""
         name, node = key
@@ -109,73 +126,3 @@ class Schedule:
                 return None
             total = total + factor * term
         return np.asarray(total)
-
-
-def solve_all(
-    schedule: Schedule,
-    pool: Callable[[], AbstractContextManager[Executor]],
-    workers: int,
-    keep: Callable[[Key, CaseResult], None],
-) -> None:
-    """Solve what is not in `schedule.results` yet, `workers` cases at once.
-
-    A process that dies under a case gives it the status `STOPPED`; the others go on in a new pool.
-    Where several were under way each is tried again alone, so that only the one to blame is given
-    up, whatever the number of workers.
-
-    pool : makes the executor. keep : is called with every result as it comes, in any order.
-    """
-    waiting = [key for key in schedule.keys if key not in schedule.results]
-    suspects: list[Key] = []
-    while waiting:
-        batch, at_once = (suspects[:1], 1) if suspects else (waiting, workers)
-        with pool() as executor:
-            lost = _until_broken(schedule, batch, executor, at_once, keep)
-        suspects = suspects[1:]
-        if len(lost) == 1:
-            (key,) = lost
-            schedule.results[key] = stopped()
-            keep(key, schedule.results[key])
-        else:
-            suspects += sorted(lost)
-        waiting = [key for key in waiting if key not in schedule.results]
-
-
-def _until_broken(
-    schedule: Schedule,
-    waiting: Sequence[Key],
-    executor: Executor,
-    workers: int,
-    keep: Callable[[Key, CaseResult], None],
-) -> set[Key]:
-    """Go on until all is done, or a process died; then return what was under way."""
-    begun = {key[0] for key in waiting}
-    begun |= {stage.follows for stage in schedule.stages if stage.name in begun and stage.follows}
-    for stage in schedule.stages:
-        if stage.name in begun and stage.name not in schedule.slopes:
-            try:
-                schedule.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
-            except BrokenProcessPool:
-                schedule.slopes[stage.name] = None  # its cases start without a prediction
-                return set()
-    running: dict[Future[CaseResult], Key] = {}
-    left = list(waiting)
-    while left or running:
-        for key in [key for key in left if schedule.is_ready(key)]:
-            if len(running) >= workers:
-                break
-            try:
-                running[executor.submit(solve_case, schedule.case(key))] = key
-            except BrokenProcessPool:
-                return {key, *running.values()}
-            left.remove(key)
-        finished, _ = wait(running, return_when=FIRST_COMPLETED)
-        for future in finished:
-            key = running.pop(future)
-            try:
-                result = future.result()
-            except BrokenProcessPool:
-                return {key, *running.values()}
-            schedule.results[key] = result
-            keep(key, result)
-    return set()

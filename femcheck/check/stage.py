@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from femcheck.check.case import Solid
 
-__all__ = ["Stage", "layers_for"]
-
-TURN_PER_LAYER = 0.2  # rad; the error of the tip goes with its fourth power: 0.05 % there
-LONGEST_LAYER = 3.0  # outer radii; longer ones lock as the penalty grows
-FEWEST_LAYERS, MOST_LAYERS = 4, 40
+__all__ = ["Stage"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +26,3 @@ class Stage:
     def name(self) -> str:
         """Its solid's name."""
         return self.solid.name
-
-
-def layers_for(turn: float, slenderness: float) -> int:
-    """Layers for an actuator that the beam says turns by at most `turn` [rad].
-
-    slenderness : length over outer radius.
-    """
-    needed = max(turn / TURN_PER_LAYER, slenderness / LONGEST_LAYER)
-    return int(np.clip(np.ceil(needed), FEWEST_LAYERS, MOST_LAYERS))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -25,6 +25,7 @@ __all__ = [
     "check_sealed",
     "geometry_steps",
     "sealed_copy",
+    "slender_copy",
 ]
 
 
@@ -79,6 +80,11 @@ class Subject:
         return float(np.hypot(strains[:, 1], strains[:, 2]).max() * self.design.actuator.length)
 
     @property
+    def slenderness(self) -> float:
+        """H/D: length over outer diameter."""
+        return self.design.actuator.length / (2 * self.design.grid.outer_radius)
+
+    @property
     def fatal(self) -> Fault | None:
         """Why no solid can be made of it."""
         return next((f for f in self.outline.faults if f.severity is Severity.FATAL), None)
@@ -125,6 +131,19 @@ def sealed_copy(name: str, design: Design, skin: float) -> Subject:
     sealed = Design.model_validate(sealed.model_dump(by_alias=True, exclude_none=True))
     moved = np.linalg.norm(sealed.workspace.tips - design.workspace.tips, axis=1)
     return Subject(name, sealed, moved)
+
+
+def slender_copy(subject: Subject, slenderness: float) -> Subject:
+    """A subject of another length: H/D outer diameters; the beam is of that length too.
+
+    Raises
+    ------
+    ValueError : a length that no design can have.
+    """
+    length = slenderness * 2 * subject.design.grid.outer_radius
+    actuator = subject.design.actuator.model_dump() | {"length": length}
+    changed = subject.design.model_dump(by_alias=True, exclude_none=True) | {"actuator": actuator}
+    return replace(subject, design=Design.model_validate(changed))
 
 
 def check_sealed(name: str, design: Design) -> None:

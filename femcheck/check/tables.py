@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.files import csv_text
+from beamopt.files import csv_text, json_text
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
 from femcheck.continuation.outcome import Status
 
-__all__ = ["compare_csv", "summary", "table_csv", "timing_csv", "verdict"]
+__all__ = ["COMPARE", "cells", "plain", "summary", "tables_of", "verdict"]
 
 DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
 
@@ -29,7 +29,18 @@ TABLE = (
 )
 
 
-def compare_csv(checked: Checked) -> str:
+def tables_of(checked: Checked) -> dict[str, str | None]:
+    """All files that are text; None where there is nothing to say."""
+    compared = checked.comparison
+    return {
+        "compare.csv": None if compared is None else _compare_csv(checked),
+        "table.csv": None if compared is None else _table_csv(compared),
+        "summary.json": json_text(summary(checked)),
+        "timing.csv": csv_text("what,value,unit", _timing(checked)),
+    }
+
+
+def _compare_csv(checked: Checked) -> str:
     """27 rows for every solid, computed (c finite) and extrapolated (c infinite)."""
     compared = checked.comparison
     assert compared is not None
@@ -46,20 +57,20 @@ def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]
             moved = displacement[row]
             yield (
                 law,
-                _plain(solid.penalty),
+                plain(solid.penalty),
                 0.0,  # the law has no Poisson coupling
                 solid.mesh,
-                *map(_plain, pressures),
-                *_cells(beam[row]),
-                *_cells(solid.tips[row]),
-                *_cells([difference[row], difference[row] / length]),
-                *_cells([difference[row] / moved if moved > 0 else math.nan]),
-                *_cells(solid.volume_ratios[row]),
+                *map(plain, pressures),
+                *cells(beam[row]),
+                *cells(solid.tips[row]),
+                *cells([difference[row], difference[row] / length]),
+                *cells([difference[row] / moved if moved > 0 else math.nan]),
+                *cells(solid.volume_ratios[row]),
                 solid.statuses[row].value,
             )
 
 
-def table_csv(compared: Comparison) -> str:
+def _table_csv(compared: Comparison) -> str:
     """27 rows: beam, solid, difference and what it is made of."""
     subject = compared.subject
     length = subject.design.actuator.length
@@ -79,16 +90,16 @@ def table_csv(compared: Comparison) -> str:
     pressures = subject.pressures.tolist()
     rows = zip(pressures, columns, compared.final.statuses, strict=True)
     return csv_text(
-        TABLE, [(*map(_plain, at), *_cells(row), status.value) for at, row, status in rows]
+        TABLE, [(*map(plain, at), *cells(row), status.value) for at, row, status in rows]
     )
 
 
-def _plain(value: float) -> object:
+def plain(value: float) -> object:
     """Whole numbers without a point, infinity as inf."""
     return int(value) if float(value).is_integer() else value
 
 
-def _cells(values: Any) -> list[object]:
+def cells(values: Any) -> list[object]:
     """Rounded, so that the last bits of a solver do not show; empty where there is no answer."""
     rounded = [round(float(value), DIGITS) + 0.0 for value in values]
     return [None if math.isnan(value) else value for value in rounded]
@@ -216,7 +227,7 @@ def _stability(negative: list[int | None]) -> str:
     return "no negative eigenvalue in any case" if unstable == 0 else f"{unstable} cases unstable"
 
 
-def timing_csv(checked: Checked) -> Iterator[tuple[str, float, str]]:
+def _timing(checked: Checked) -> Iterator[tuple[str, float, str]]:
     """What the cases cost, summed over processes."""
     for stage in checked.stages:
         spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]

@@ -58,8 +58,35 @@ def run_designs(
         typer.Option(help="Largest difference allowed, as a share of the tip's displacement."),
     ] = "5%",
     law: Annotated[
-        str, typer.Option(help="rigid-section: does the solid converge to the beam?")
+        str,
+        typer.Option(
+            help="rigid-section: does the solid converge to the beam? What real material does: "
+            "neo-hookean, gent, mooney-rivlin, yeoh; wound: neo-hookean, every chamber wound."
+        ),
     ] = "rigid-section",
+    nu: Annotated[
+        float | None, typer.Option(help="Poisson's ratio of a material, 0…0.5; 0.5 if left out.")
+    ] = None,
+    constant: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="A constant of a law; `femcheck laws` has them."),
+    ] = None,
+    wind: Annotated[
+        str | None,
+        typer.Option(help="Wind thread round chambers, outer (the outside) or both; any material."),
+    ] = None,
+    winding: Annotated[
+        float | None,
+        typer.Option(
+            metavar="N/M", help="Stiffness of the thread times turns per metre; 1e5 if left out."
+        ),
+    ] = None,
+    slenderness: Annotated[
+        float | None,
+        typer.Option(
+            metavar="H/D", help="Take another length, in outer diameters; for the beam too."
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
     layers: Annotated[
         int | None, typer.Option(help="Layers, 2…64; as many as its bending needs if left out.")
@@ -86,7 +113,8 @@ def run_designs(
 
     Ends with 0 if every design agrees, 1 if one does not or has cases without an answer.
     """
-    from femcheck.cli.run import RunRequest, run_command
+    from femcheck.cli.request import RunRequest
+    from femcheck.cli.run import run_command
 
     run_command(
         RunRequest(
@@ -95,6 +123,11 @@ def run_designs(
             seal=seal,
             agree=agree,
             law=law,
+            nu=nu,
+            constants=constant or [],
+            wind=wind,
+            winding=winding,
+            slenderness=slenderness,
             workers=workers,
             layers=layers,
             size=size,

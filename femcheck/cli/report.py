@@ -12,9 +12,11 @@ from rich.table import Table
 from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console
 from femcheck.check.checked import Checked
+from femcheck.check.subject import Subject
 from femcheck.check.tables import verdict
+from femcheck.mesh.quality import Quality
 
-__all__ = ["report"]
+__all__ = ["notes_of", "report"]
 
 
 def report(checked: Checked, folder: Path) -> None:
@@ -26,11 +28,8 @@ def report(checked: Checked, folder: Path) -> None:
     if checked.comparison is not None:
         console.print(_table(checked))
     console.print(f"  {'implementation':<16}{verdict(checked)}", soft_wrap=True, markup=False)
-    console.print(
-        f"  {'prediction':<16}not asked: {checked.options.law} is no material",
-        soft_wrap=True,
-        markup=False,
-    )
+    said = "not asked: rigid-section is no material; --law neo-hookean or wound asks"
+    console.print(f"  {'prediction':<16}{said}", soft_wrap=True, markup=False)
     console.print(f"  {'files':<16}{folder}/", soft_wrap=True, markup=False)
 
 
@@ -41,18 +40,18 @@ def _lines(checked: Checked) -> list[tuple[str, str]]:
     area = float(outline.moments.area)
     return [
         ("section", f"{area:.1f} mm² of material; chambers per supply {chambers}"),
-        *(("note", note) for note in _notes(checked)),
+        *(("note", note) for note in notes_of(checked.subject, checked.quality)),
         *_geometry(checked),
         *_solids(checked),
         *_parts(checked),
     ]
 
 
-def _notes(checked: Checked) -> Iterator[str]:
-    subject = checked.subject
+def notes_of(subject: Subject, quality: Quality | None) -> Iterator[str]:
+    """What a person should know about a section before believing anything about it."""
     yield from map(str, subject.outline.faults)
-    if checked.quality is not None:
-        yield from checked.quality.notes
+    if quality is not None:
+        yield from quality.notes
     if subject.has_islands:
         yield "with an island the beam is not what the solid converges to"
     moved = subject.sealing_moved

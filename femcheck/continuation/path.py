@@ -38,14 +38,14 @@ class Path:
     critical : load at which the stable part ends [kPa]; NaN where it does not.
     points : all equilibria, in order, from rest.
     stops : the stable equilibria at the loads asked for; None where there is none.
-    last : the last stable equilibrium.
+    last : the stable equilibrium with the largest load; None where there is none at all.
     """
 
     status: Status
     critical: float
     points: tuple[PathPoint, ...]
     stops: tuple[PathPoint | None, ...]
-    last: PathPoint
+    last: PathPoint | None
     statistics: Statistics = field(default_factory=Statistics)
 
 

@@ -50,6 +50,21 @@ class Shapes:
             [np.ravel(turns), np.ravel(moves), warping.ravel(), state.hydrostatic]
         )
 
+    def axis(self, state: State) -> FloatArray:
+        """(k, 4) z [mm], ε, κ1, κ2 [1, 1/mm, 1/mm] of the rod that the planes of nodes make.
+
+        Strains from each plane to the next, as of a Cosserat rod: R' = R [κ]×, h' = (1 + ε) R e3;
+        z is halfway between the undeformed planes, h follows the section's material centroid.
+        """
+        heights = self._origins[:, 2]
+        steps = np.diff(heights)
+        count = 3 * steps.size
+        shape = self.of(state)
+        turns, moves = shape[:count].reshape(-1, 3), shape[count : 2 * count].reshape(-1, 3)
+        middle = (heights[1:] + heights[:-1]) / 2
+        strains = np.column_stack([moves[:, 2], turns[:, 0], turns[:, 1]]) / steps[:, None]
+        return np.column_stack([middle, strains])
+
     def state(self, shape: FloatArray) -> State:
         """The state of a shape; the base is held and the tip face plane, whatever its warping."""
         count = 3 * (len(self._planes) - 1)

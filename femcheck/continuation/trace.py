@@ -80,8 +80,9 @@ class PathSteps:
         ----------
         direction : (3,) load, its largest component 1.
         stops : ascending loads P [kPa] at which an equilibrium is wanted.
-        beyond : volume over that at rest up to which the path is followed past a limit point; by
-            default it ends with the first point behind it.
+        beyond : volume over that at rest up to which the path is followed past a limit point; what
+            chambers lose under suction counts as grown. By default it ends with the first point
+            behind it.
         """
         return _Trace(self, problem, predictor, direction, stops, solver).run(beyond)
 
@@ -105,14 +106,15 @@ class _Trace:
         self._points: list[PathPoint] = []
         self._found: list[PathPoint | None] = [None] * len(stops)
         rest = problem.rest()
-        self._scale = np.array([float(direction @ problem.volumes(rest)), self._stops[-1]])
+        worked_on = float(np.abs(direction) @ problem.volumes(rest))
+        self._scale = np.array([worked_on or 1.0, self._stops[-1] or 1.0])
 
     def run(self, beyond: float | None) -> Path:
         began = time.perf_counter()
         status, critical = self._follow(beyond)
         self._spent.seconds = time.perf_counter() - began
         stable = [point for point in self._points if not is_past(point)]
-        last = max(stable, key=lambda point: point.load) if stable else self._points[0]
+        last = max(stable, key=lambda point: point.load) if stable else None
         points, found = tuple(self._points), tuple(self._found)
         return Path(status, critical, points, found, last, self._spent)
 
@@ -122,6 +124,8 @@ class _Trace:
             slope = self._at_rest(rest)
         except SingularMatrixError:
             return Status.LINEAR_SOLVER, 0.0
+        if self._has_all():
+            return Status.CONVERGED, float("nan")
         ended: tuple[Status, float] | None = None
         earlier: tuple[Slope, float] | None = None
         step = self._steps.first
@@ -138,15 +142,21 @@ class _Trace:
             self._points.append(tried)
             if ended is None:
                 self._note(tried)
-                if self._found[-1] is not None:
+                if self._has_all():
                     return Status.CONVERGED, float("nan")
-            elif beyond is None or tried.volume >= beyond * self._points[0].volume:
+            elif beyond is None or self._grown(tried) >= beyond:
                 return ended
             assert slope_there is not None
             earlier, slope = (slope, length), slope_there
             quick = self._iterations <= self._steps.brisk
             step = min(length * (2.0 if quick else 1.0), self._steps.longest)
         return ended or (Status.STEP_TOO_SMALL, self._points[-1].load)
+
+    def _has_all(self) -> bool:
+        return self._found[-1] is not None
+
+    def _grown(self, point: PathPoint) -> float:
+        return 1 + (point.volume - self._points[0].volume) / float(self._scale[0])
 
     def _at_rest(self, rest: State) -> Slope:
         nothing = np.zeros(3)
@@ -171,14 +181,14 @@ class _Trace:
         """The next point, or why there is none; its slope; the length that was tried."""
         ahead = [stop for stop in self._stops if stop > here.load * (1 + 1e-9)]
         rise = slope.plane[1] * self._scale[1]
-        mix, target = None, 0.0
-        if ahead and here.load + rise * length >= ahead[0] and not is_past(here):
-            length = (ahead[0] - here.load) / rise
-            mix, target = Mix(0.0, 1.0), ahead[0]
+        to_stop = (ahead[0] - here.load) / rise if ahead and not is_past(here) else np.inf
+        stops = length >= to_stop
+        length = min(length, to_stop)
         at = np.array([here.volume, here.load]) / self._scale + length * slope.plane
-        if mix is None:
-            mix = Mix(*(slope.plane / self._scale))
-            target = float(slope.plane @ at)
+        if stops:
+            mix, target = Mix(0.0, 1.0), ahead[0]
+        else:
+            mix, target = Mix(*(slope.plane / self._scale)), float(slope.plane @ at)
         bend: FloatArray | float = 0.0
         if earlier is not None:
             bend = (slope.shape - earlier[0].shape) / earlier[1]
@@ -192,8 +202,15 @@ class _Trace:
         self._iterations = outcome.statistics.iterations
         if outcome.state is None:
             return outcome.status, None, length
+        if not stops and to_stop < np.inf and control.load > ahead[0]:
+            # a path that stiffens rises more than its tangent: back to the stop it went past
+            return self._step(here, slope, earlier, to_stop)
         unstable = outcome.negative_eigenvalues
-        return *self._measured(outcome.state, control.load, unstable, slope), length
+        try:
+            point, slope_there = self._measured(outcome.state, control.load, unstable, slope)
+        except SingularMatrixError:
+            return Status.LINEAR_SOLVER, None, length
+        return point, slope_there, length
 
     def _measured(
         self, state: State, load: float, unstable: int | None, before: Slope | None = None

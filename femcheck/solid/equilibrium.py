@@ -98,6 +98,8 @@ class Equilibrium:
 
     def with_law(self, law: Law) -> Equilibrium:
         """The same body of another law; they share the pattern of the tangent."""
+        if law == self.law:
+            return self
         other = copy(self)
         other._take(law)
         return other

@@ -10,8 +10,8 @@ from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import Extrusion, extrude, stations
 from femcheck.mesh.subdivision import subdivide
 from femcheck.solid.body import discretise, nodes_at
-from femcheck.solid.equilibrium import Equilibrium, actuator
-from femcheck.solid.state import moved, rest_state
+from femcheck.solid.equilibrium import actuator
+from femcheck.solid.state import rest_state
 from tests.femcheck.ring_section import ring_section
 
 LENGTH = 100.0

@@ -13,7 +13,7 @@ from femcheck.solid.body import Body, discretise, nodes_at
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.plate import cross_matrix, rotation, symmetric_turn
-from femcheck.solid.state import State, moved, rest_state
+from femcheck.solid.state import State, rest_state
 from tests.femcheck.lattice import (
     SOFT,
     bent_state,

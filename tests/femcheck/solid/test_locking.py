@@ -13,7 +13,7 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import discretise
-from femcheck.solid.equilibrium import Equilibrium, actuator
+from femcheck.solid.equilibrium import actuator
 from femcheck.solid.state import rest_state
 from tests.femcheck.sections import three_chambers
 

@@ -6,7 +6,7 @@ from scipy.sparse.linalg import spsolve
 
 from femcheck.solid.body import Body
 from femcheck.solid.elements import ELEMENTS
-from femcheck.solid.equilibrium import Equilibrium, actuator
+from femcheck.solid.equilibrium import actuator
 from femcheck.solid.plate import rotation
 from femcheck.solid.state import State, rest_state
 from tests.femcheck.lattice import SOFT, inner_nodes, lattice_body

@@ -1,0 +1,98 @@
+"""What was predicted, told on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from rich.markup import escape
+from rich.table import Table
+
+from beamopt.cli.progress import console
+from femcheck.cli.report import notes_of
+from femcheck.material.catalogue import constants_of
+from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.verdict import advice, ending, verdict
+
+__all__ = ["report_prediction"]
+
+
+def report_prediction(found: Prediction, folder: Path) -> None:
+    """Say what was predicted."""
+    console.print(f"[bold]{escape(found.subject.name)}[/]")
+    for name, text in _lines(found):
+        console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)
+    if found.has_answers:
+        console.print(_combinations(found))
+        console.print(_limits(found))
+    said = [("prediction", verdict(found)), ("", advice(found)), ("files", f"{folder}/")]
+    for name, line in said:
+        if line is not None:
+            console.print(f"  {name:<16}{line}", soft_wrap=True, markup=False)
+
+
+def _lines(found: Prediction) -> Iterator[tuple[str, str]]:
+    """Material, mesh and notes, before the tables."""
+    yield "material", f"{found.options.title}: {found.law.text}"
+    for one in constants_of(found.law):
+        unit = f" {one.unit}" if one.unit else ""
+        yield "", f"{one.name} = {one.value:.6g}{unit} ({one.source})"
+    if found.options.wound is not None:
+        thread = found.options.thread
+        said = f"{thread.stiffness:g} N/m, slack below rest, toe {thread.toe:g}"
+        yield "winding", f"{found.options.wound.value}, {said}"
+    actuator = found.subject.design.actuator
+    yield "actuator", f"H = {actuator.length:g} mm, H/D = {found.subject.slenderness:.3g}"
+    yield from (("note", note) for note in notes_of(found.subject, found.quality))
+    for mesh, solid in found.solids.items():
+        size = f"{len(solid.section.triangles)} triangles × {solid.heights.size - 1} layers"
+        form = "displacements" if found.law.volumetric_compliance is None else "mixed"
+        unknowns = f"{solid.body().unknowns:,} unknowns"
+        yield f"{mesh} mesh", f"{size} of {solid.element} ({form}), {unknowns}"
+
+
+def _combinations(found: Prediction) -> Table:
+    """27 rows of what matters most."""
+    title = f"beam against solid: {found.options.title}"
+    table = Table(title=title, title_justify="left")
+    for name in ("p1 [kPa]", "p2", "p3", "moves [mm]", "differs [mm]", "share", "stretch"):
+        table.add_column(name, justify="right")
+    table.add_column("status")
+    for row, pressures in enumerate(found.subject.pressures):
+        answer, difference = found.answer(row), found.difference[row]
+        answered = not np.isnan(difference)
+        table.add_row(
+            *(f"{value:g}" for value in pressures),
+            f"{found.displacement[row]:.2f}",
+            f"{difference:.3f}" if answered else "–",
+            f"{100 * found.share[row]:.2f} %" if answered else "–",
+            f"{answer.stretch:.2f}" if answer is not None else "–",
+            ending(found.status(row), found.ended_at(row)),
+        )
+    return table
+
+
+def _limits(found: Prediction) -> Table:
+    """Where each supply alone, and all alike, end."""
+    table = Table(title="limits", title_justify="left")
+    for name in ("pressure in", "ends", "on the coarse mesh", "chambers grow", "largest stretch"):
+        table.add_column(name)
+    length = found.subject.design.actuator.length
+    for number, ray in enumerate(found.rays):
+        result, last = found.result(number), found.result(number).last
+        if not ray.is_principal or last is None:
+            continue
+        coarse = found.results.get(("coarse", number))
+        rest = found.solids["standard"].section.moments.chamber_areas * length
+        loaded = np.abs(np.array(ray.direction))
+        growth = float(last.volumes @ loaded) / max(float(rest @ loaded), 1e-300)
+        x, y, z = last.stretch_at
+        table.add_row(
+            ray.text,
+            "–" if np.isnan(result.critical) else ending(result.status, result.critical),
+            "–" if coarse is None or np.isnan(coarse.critical) else f"{coarse.critical:.4g} kPa",
+            f"{growth:.3g} times at {last.load:.3g} kPa" if rest @ loaded > 0 else "–",
+            f"{last.stretch:.2f} at ({x:.1f}, {y:.1f}, {z:.1f}) mm",
+        )
+    return table

@@ -1,0 +1,81 @@
+"""Traced rays on disk, one file each, so that a killed prediction goes on where it was."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zipfile
+import zlib
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.files import write_atomic
+from femcheck.continuation.outcome import Statistics, Status
+from femcheck.prediction.answer import Answer
+from femcheck.prediction.ray_trace import RayResult
+
+__all__ = ["ray_file", "read_ray", "write_ray"]
+
+
+def ray_file(folder: Path, mesh: str, ray: str) -> Path:
+    """The file of a ray."""
+    return folder / f"{mesh}-{ray}.npz"
+
+
+def write_ray(path: Path, result: RayResult, digest: str) -> None:
+    """Keep a result of the question that `digest` tells from others."""
+    spent = result.statistics
+    arrays: dict[str, Any] = {
+        "digest": np.array(digest),
+        "status": np.array(result.status.name),
+        "critical": np.array(result.critical),
+        "track": result.track,
+        "counts": np.array([spent.steps, spent.iterations]),
+        "seconds": np.array(
+            [spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds]
+        ),
+        "stops": np.array([answer is not None for answer in result.answers]),
+    }
+    for number, answer in enumerate((*result.answers, result.last)):
+        if answer is not None:
+            for one in fields(Answer):
+                arrays[f"{number}_{one.name}"] = np.asarray(getattr(answer, one.name))
+    stream = io.BytesIO()
+    np.savez(stream, allow_pickle=False, **arrays)
+    write_atomic(path, stream.getvalue())
+
+
+def read_ray(path: Path, digest: str) -> RayResult | None:
+    """A kept result; None where there is none to the same question that can be read."""
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as kept:
+            if str(kept["digest"]) != digest:
+                return None
+            steps, iterations = kept["counts"].tolist()
+            stops = kept["stops"].tolist()
+            *answers, last = (_answer(kept, number) for number in range(len(stops) + 1))
+            if [answer is not None for answer in answers] != stops:
+                return None
+            return RayResult(
+                Status[str(kept["status"])],
+                float(kept["critical"]),
+                tuple(answers),
+                last,
+                kept["track"],
+                Statistics(steps, iterations, *kept["seconds"].tolist()),
+            )
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):
+        return None
+    except (RuntimeError, SyntaxError, zlib.error, struct.error):
+        return None  # headers with a bit turned over: encrypted, compressed, of no size
+
+
+def _answer(kept: Any, number: int) -> Answer | None:
+    if f"{number}_load" not in kept:
+        return None
+    values = {one.name: kept[f"{number}_{one.name}"] for one in fields(Answer)}
+    plain = {name: float(value) for name, value in values.items() if value.ndim == 0}
+    return Answer(**(values | plain))

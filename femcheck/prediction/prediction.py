@@ -1,0 +1,168 @@
+"""What was predicted: 27 answers or why there is none, limits, and the box that is safe."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.arrays import FloatArray
+from femcheck.check.case import Solid
+from femcheck.check.subject import Subject
+from femcheck.continuation.outcome import Status
+from femcheck.material.law import Law
+from femcheck.mesh.gmsh_section import MeshFailure
+from femcheck.mesh.quality import Quality
+from femcheck.prediction.answer import Answer
+from femcheck.prediction.options import PredictionOptions
+from femcheck.prediction.ray_trace import RayResult
+from femcheck.prediction.rays import Ray
+from femcheck.prediction.work import RayKey
+
+__all__ = ["Prediction"]
+
+SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
+STILL = 1e-9  # mm
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What a design of a real material does at its 27 pressure combinations.
+
+    failure : why there is no solid; results are then empty.
+    solids : by mesh, "standard" and "coarse".
+    rays, places : through the combinations; each combination's ray and load, None without pressure.
+    results : of every ray on the standard mesh, of the principal ones on the coarse one.
+    """
+
+    subject: Subject
+    options: PredictionOptions
+    law: Law
+    failure: MeshFailure | None
+    quality: Quality | None
+    solids: Mapping[str, Solid]
+    rays: tuple[Ray, ...]
+    places: tuple[tuple[int, float] | None, ...]
+    results: Mapping[RayKey, RayResult]
+
+    @property
+    def has_answers(self) -> bool:
+        """Whether there is a solid at all."""
+        return self.failure is None
+
+    @property
+    def largest(self) -> float:
+        """Largest pressure asked for [kPa]."""
+        return float(np.abs(self.subject.pressures).max())
+
+    def result(self, number: int) -> RayResult:
+        """Of a ray on the standard mesh."""
+        return self.results["standard", number]
+
+    def answer(self, row: int, mesh: str = "standard") -> Answer | None:
+        """The stable equilibrium at a combination; None without pressure or where none is."""
+        place = self.places[row]
+        if place is None or (mesh, place[0]) not in self.results:
+            return None
+        number, load = place
+        return self.results[mesh, number].answers[self.rays[number].stops.index(load)]
+
+    def status(self, row: int, mesh: str = "standard") -> Status:
+        """How a combination ended: what its ray met before it, if it met anything."""
+        place = self.places[row]
+        if place is None or self.answer(row, mesh) is not None:
+            return Status.CONVERGED
+        return self.results[mesh, place[0]].status
+
+    def ended_at(self, row: int) -> float:
+        """Load at which a combination's ray lost its stability before it [kPa]; NaN if not."""
+        place = self.places[row]
+        if place is None or self.answer(row) is not None:
+            return float("nan")
+        return self.result(place[0]).critical
+
+    @cached_property
+    def is_loaded(self) -> NDArray[np.bool_]:
+        """(27,) whether any supply has pressure."""
+        return np.array([place is not None for place in self.places])
+
+    @cached_property
+    def tips(self) -> FloatArray:
+        """(27, 3) tips [mm], the base's material centroid at the origin; NaN without an answer."""
+        return self.tips_on("standard")
+
+    def tips_on(self, mesh: str) -> FloatArray:
+        """(27, 3) tips on a mesh."""
+        tips = np.full((len(self.places), 3), np.nan)
+        if not self.has_answers:
+            return tips
+        length = self.subject.design.actuator.length
+        tips[~self.is_loaded] = (0.0, 0.0, length)
+        centroid = np.append(self.solids[mesh].section.moments.centroid, 0.0)
+        for row in range(len(self.places)):
+            answer = self.answer(row, mesh)
+            if answer is not None:
+                tips[row] = answer.tip - centroid
+        return tips
+
+    @property
+    def difference(self) -> FloatArray:
+        """(27,) between the beam's tip and the solid's [mm]; NaN without an answer."""
+        return np.asarray(np.linalg.norm(self.tips - self.subject.beam_tips, axis=1))
+
+    @property
+    def displacement(self) -> FloatArray:
+        """(27,) of the beam's tip [mm]."""
+        straight = np.array([0, 0, self.subject.design.actuator.length])
+        return np.asarray(np.linalg.norm(self.subject.beam_tips - straight, axis=1))
+
+    @property
+    def share(self) -> FloatArray:
+        """(27,) difference over the beam's displacement, or a hundredth of the largest one."""
+        least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
+        return np.asarray(self.difference / np.maximum(self.displacement, least))
+
+    @property
+    def discretisation(self) -> FloatArray:
+        """(27,) change of the tip from the coarse mesh to the standard one [mm]; NaN: not known."""
+        return np.asarray(np.linalg.norm(self.tips - self.tips_on("coarse"), axis=1))
+
+    @property
+    def unanswered(self) -> int:
+        """Loaded combinations without a stable answer."""
+        return int((self.is_loaded & np.isnan(self.tips[:, 0])).sum())
+
+    @property
+    def worst(self) -> float:
+        """Largest share over the loaded combinations with an answer; NaN without any."""
+        shares = self.share[self.is_loaded & ~np.isnan(self.share)]
+        return float(shares.max()) if shares.size else float("nan")
+
+    @property
+    def median(self) -> float:
+        """Median share over the loaded combinations with an answer; NaN without any."""
+        shares = self.share[self.is_loaded & ~np.isnan(self.share)]
+        return float(np.median(shares)) if shares.size else float("nan")
+
+    @property
+    def first_to_end(self) -> int | None:
+        """The ray whose stable part ends at the lowest load; None where none ends."""
+        ended = [n for n in range(len(self.rays)) if not np.isnan(self.result(n).critical)]
+        return min(ended, key=lambda n: (self.result(n).critical, n)) if ended else None
+
+    @property
+    def stable_box(self) -> float:
+        """P [kPa] so that combinations up to P in every supply have a stable answer.
+
+        As far as the rays tell: the combinations, scaled down, lie on the same ones.
+        """
+        first = self.first_to_end
+        return self.largest if first is None else self.result(first).critical
+
+    @property
+    def holds(self) -> bool:
+        """Whether every combination has a stable answer and the beam is near enough to all."""
+        return self.has_answers and self.unanswered == 0 and self.worst <= self.options.agree

@@ -1,0 +1,86 @@
+"""One ray of one solid: the unit of work that processes share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from femcheck.check.case import Solid, workshop
+from femcheck.continuation.outcome import Statistics, Status
+from femcheck.continuation.path import Path
+from femcheck.continuation.trace import PathSteps
+from femcheck.prediction.answer import Answer, read_off
+from femcheck.prediction.rays import Ray
+from femcheck.solid.equilibrium import Equilibrium
+
+__all__ = ["RayResult", "RayTask", "stopped_ray", "trace_ray"]
+
+TRACK = ("load", "volume_1", "volume_2", "volume_3", "x", "y", "z", "unstable")
+"""Columns of a track: P [kPa], volumes [mm³], tip [mm], unstable directions (−1: not known)."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayTask:
+    """A ray to be followed.
+
+    seconds : time limit [s].
+    """
+
+    solid: Solid
+    ray: Ray
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class RayResult:
+    """What was found along a ray.
+
+    status : CONVERGED where every stop has a stable equilibrium, else what ended the stable part.
+    critical : load at which the stable part ends [kPa]; NaN where it does not.
+    answers : at the stops; None where there is none.
+    last : the last stable equilibrium; None where not even rest could be computed.
+    track : (n, 8) all equilibria, see `TRACK`.
+    """
+
+    status: Status
+    critical: float
+    answers: tuple[Answer | None, ...]
+    last: Answer | None
+    track: FloatArray
+    statistics: Statistics = field(default_factory=Statistics)
+
+
+def trace_ray(task: RayTask) -> RayResult:
+    """Follow a ray; whatever happens, a result with a status."""
+    shop = workshop(task.solid)
+    steps = PathSteps(seconds=task.seconds)
+    direction = np.array(task.ray.direction)
+    path = steps.trace(shop.problem, shop.shapes, direction, task.ray.stops, shop.solver)
+    answers = tuple(
+        None if point is None else read_off(shop.problem, shop.shapes, point)
+        for point in path.stops
+    )
+    last = read_off(shop.problem, shop.shapes, path.last) if path.last else None
+    track = _track(shop.problem, path)
+    return RayResult(path.status, path.critical, answers, last, track, path.statistics)
+
+
+def _track(problem: Equilibrium, path: Path) -> FloatArray:
+    rows = [
+        [
+            point.load,
+            *problem.volumes(point.state),
+            *point.state.tip,
+            -1 if point.unstable is None else point.unstable,
+        ]
+        for point in path.points
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, len(TRACK))
+
+
+def stopped_ray(ray: Ray) -> RayResult:
+    """The result of a ray whose process ended under it."""
+    nothing = np.empty((0, len(TRACK)))
+    return RayResult(Status.STOPPED, 0.0, (None,) * len(ray.stops), None, nothing)

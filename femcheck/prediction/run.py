@@ -1,0 +1,144 @@
+"""Predicting a design: meshes, a path along every ray, tables, figures."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import numpy as np
+
+import femcheck.picture as picture
+from beamopt.plot.style import save_figure
+from beamopt.study.pool import processes
+from femcheck.check.case import Solid
+from femcheck.check.folder import CheckFolder
+from femcheck.check.meshes import heights_of, section_meshes
+from femcheck.check.subject import Subject
+from femcheck.check.work import solve_all
+from femcheck.continuation.outcome import Status
+from femcheck.mesh.gmsh_section import MeshFailure
+from femcheck.mesh.quality import quality_of
+from femcheck.prediction.figures import axis_figure, paths_figure
+from femcheck.prediction.kept import ray_file, read_ray, write_ray
+from femcheck.prediction.options import PredictionOptions
+from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.ray_trace import RayResult
+from femcheck.prediction.rays import rays_of
+from femcheck.prediction.tables import tables_of
+from femcheck.prediction.work import RayKey, RayWork
+
+__all__ = ["predict_design"]
+
+AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a prediction that goes on tries these once more
+FIGURES = ("paths", "axis")
+
+Progress = Callable[[int, int, str], None]
+Pool = Callable[[int], AbstractContextManager[Executor]]
+
+
+def predict_design(
+    subject: Subject,
+    out: Path,
+    options: PredictionOptions,
+    *,
+    workers: int = 1,
+    resume: bool = False,
+    progress: Progress | None = None,
+    pool: Pool = processes,
+) -> Prediction:
+    """Follow a design of a real material to its 27 pressure combinations, or to where it ends.
+
+    Parameters
+    ----------
+    out : folder for tables, meshes and figures.
+    workers : rays at once; the result does not depend on it.
+    resume : go on with what is in `out`.
+    progress : called with how many rays are done, how many there are, and what was last.
+    pool : makes an executor of that many workers.
+
+    Raises
+    ------
+    InputError : `out` holds something else, or the material contradicts the design's moduli.
+    """
+    law = options.law_for(subject.design.actuator)
+    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    sections = section_meshes(subject, options)
+    if isinstance(sections, MeshFailure):
+        found = Prediction(subject, options, law, sections, None, {}, (), (), {})
+        _write(folder, found)
+        return found
+    wound = None if options.wound is None else (options.wound, options.thread)
+    heights = heights_of(subject, options)
+    solids = {
+        mesh: Solid(mesh, section, heights[mesh], options.element, law, options.solver, wound)
+        for mesh, section in zip(("standard", "coarse"), sections, strict=True)
+    }
+    rays, places = rays_of(subject.pressures)
+    work = RayWork(solids, rays, options.seconds)
+    digests = {key: _digest(solids[key[0]], work, key) for key in work.keys}
+    for key in work.keys:
+        kept = read_ray(_file(folder, work, key), digests[key])
+        if kept is not None and kept.status not in AGAIN:
+            work.results[key] = kept
+
+    def keep(key: RayKey, result: RayResult) -> None:
+        write_ray(_file(folder, work, key), result, digests[key])
+        if progress is not None:
+            said = f"{key[0]}, {rays[key[1]].text}: {result.status.value}"
+            progress(len(work.results), len(work.keys), said)
+
+    if progress is not None:
+        progress(len(work.results), len(work.keys), "starting")
+    solve_all(work, lambda: pool(workers), workers, keep)
+    quality = quality_of(subject.outline, sections[0])
+    found = Prediction(
+        subject, options, law, None, quality, solids, tuple(rays), tuple(places), work.results
+    )
+    _write(folder, found)
+    return found
+
+
+def _file(folder: CheckFolder, work: RayWork, key: RayKey) -> Path:
+    return ray_file(folder.cases, key[0], work.rays[key[1]].name)
+
+
+def _digest(solid: Solid, work: RayWork, key: RayKey) -> str:
+    """Tells one question from another: mesh, law, winding, ray and its stops."""
+    said = f"{solid.digest} {solid.law!r} {work.rays[key[1]]!r}"
+    return hashlib.blake2b(said.encode(), digest_size=16).hexdigest()
+
+
+def _write(folder: CheckFolder, found: Prediction) -> None:
+    """Tables, meshes, figures, and the picture of the most loaded stable equilibrium."""
+    folder.write(tables_of(found))
+    if not found.has_answers or not found.rays:
+        folder.without_answer()
+        for name in FIGURES:
+            for ending in ("png", "svg"):
+                (folder.path / f"{name}.{ending}").unlink(missing_ok=True)
+        return
+    for name, draw in zip(FIGURES, (paths_figure, axis_figure), strict=True):
+        ends = [folder.path / f"{name}.{ending}" for ending in ("png", "svg")]
+        save_figure(draw(found), *ends)
+    lasts = {n: found.result(n).last for n in range(len(found.rays))}
+    states = {f"last-{found.rays[n].name}": last.x for n, last in lasts.items() if last}
+    folder.write_meshes(found.solids["standard"], states)
+    shown = found.first_to_end or 0
+    last = lasts[shown]
+    if last is not None and last.load > 0:
+        ray, result = found.rays[shown], found.result(shown)
+        pressures = last.load * np.array(ray.direction)
+        said = f"{found.options.law}, chambers grow to {_growth(found, shown):.2g} times"
+        if result.status is not Status.CONVERGED:
+            said += f"; {result.status.value} at {result.critical:.3g} kPa"
+        picture.draw(folder.path, found.subject, found.solids["standard"], last.x, pressures, said)
+
+
+def _growth(found: Prediction, number: int) -> float:
+    track = found.result(number).track
+    volume = track[:, 1:4] @ np.abs(np.array(found.rays[number].direction))
+    stable = track[:, 0] <= np.max(track[:, 0])
+    return float((volume[stable] / volume[0]).max()) if volume[0] > 0 else 1.0

@@ -1,0 +1,229 @@
+"""A prediction as tables: combinations, limits, paths, strains along the axis, summary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.files import csv_text, json_text
+from femcheck.check.tables import COMPARE, DIGITS, cells, plain
+from femcheck.material.catalogue import constants_of
+from femcheck.prediction.answer import Answer
+from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.ray_trace import TRACK
+from femcheck.prediction.verdict import advice, verdict
+
+__all__ = ["tables_of"]
+
+MORE = ",ends_at_kpa,largest_stretch,stretch_x,stretch_y,stretch_z"
+LIMITS = (
+    "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
+    "volume_ratio_3,largest_stretch,stretch_x,stretch_y,stretch_z,points,iterations"
+)
+AXIS = "d1,d2,d3,load_kpa,z,stretch,curvature_x,curvature_y,beam_stretch,beam_x,beam_y"
+
+
+def tables_of(found: Prediction) -> dict[str, str | None]:
+    """All files that are text; None where there is nothing to say."""
+    files: dict[str, str | None] = {"summary.json": json_text(_summary(found))}
+    tables = {
+        "compare.csv": (COMPARE + MORE, _compare),
+        "limits.csv": (LIMITS, _limits),
+        "paths.csv": ("mesh,d1,d2,d3," + ",".join(TRACK), _paths),
+        "axis.csv": (AXIS, _axis),
+    }
+    for name, (header, rows) in tables.items():
+        files[name] = csv_text(header, rows(found)) if found.has_answers else None
+    files["timing.csv"] = csv_text("what,value,unit", _timing(found))
+    return files
+
+
+def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
+    """Every combination on the standard mesh, those of the principal rays on the coarse one."""
+    subject, length = found.subject, found.subject.design.actuator.length
+    beam, displacement = subject.beam_tips, found.displacement
+    for mesh in found.solids:
+        tips = found.tips_on(mesh)
+        difference = np.linalg.norm(tips - beam, axis=1)
+        for row, pressures in enumerate(subject.pressures.tolist()):
+            place, moved = found.places[row], displacement[row]
+            if place is not None and (mesh, place[0]) not in found.results:
+                continue
+            answer = found.answer(row, mesh)
+            ended = answer is None and place is not None
+            critical = found.results[mesh, place[0]].critical if ended and place else math.nan
+            yield (
+                found.options.law,
+                None,
+                found.options.poisson_ratio,
+                mesh,
+                *map(plain, pressures),
+                *cells(beam[row]),
+                *cells(tips[row]),
+                *cells([difference[row], difference[row] / length]),
+                *cells([difference[row] / moved if moved > 0 else math.nan]),
+                *cells(_ratios(found, mesh, answer)),
+                found.status(row, mesh).value,
+                *cells([critical]),
+                *_stretched(answer),
+            )
+
+
+def _ratios(found: Prediction, mesh: str, answer: Answer | None) -> FloatArray:
+    """(3,) volume of each supply's chambers over that at rest; NaN for a supply without any."""
+    if answer is None:
+        return np.full(3, np.nan)
+    length = found.subject.design.actuator.length
+    rest = found.solids[mesh].section.moments.chamber_areas * length
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.where(rest > 0, answer.volumes / rest, np.nan))
+
+
+def _stretched(answer: Answer | None) -> list[object]:
+    return [None] * 4 if answer is None else cells([answer.stretch, *answer.stretch_at])
+
+
+def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
+    for (mesh, number), result in sorted(found.results.items(), key=lambda item: item[0][::-1]):
+        last = result.last
+        yield (
+            mesh,
+            *map(plain, found.rays[number].direction),
+            result.status.value,
+            *cells([result.critical, math.nan if last is None else last.load]),
+            *cells(_ratios(found, mesh, last)),
+            *_stretched(last),
+            len(result.track),
+            result.statistics.iterations,
+        )
+
+
+def _paths(found: Prediction) -> Iterator[tuple[object, ...]]:
+    for (mesh, number), result in sorted(found.results.items(), key=lambda item: item[0][::-1]):
+        for row in result.track.tolist():
+            unstable = None if row[-1] < 0 else int(row[-1])
+            yield mesh, *map(plain, found.rays[number].direction), *cells(row[:-1]), unstable
+
+
+def _axis(found: Prediction) -> Iterator[tuple[object, ...]]:
+    """Strains of the last stable equilibrium of every ray, beside the beam's."""
+    for number, ray in enumerate(found.rays):
+        last = found.result(number).last
+        if last is None:
+            continue
+        pressures = last.load * np.array(ray.direction)
+        beam = cells_of_strains(found.subject.response.strains(pressures[None])[0])
+        for z, *strains in last.axis.tolist():
+            head = (*map(plain, ray.direction), *cells([last.load, z]))
+            yield *head, *cells_of_strains(np.array(strains)), *beam
+
+
+def cells_of_strains(strains: FloatArray) -> list[object]:
+    """Rounded as shares and 1/mm are: curvatures have small numbers."""
+    return [round(float(value), 3 + DIGITS) + 0.0 for value in strains]
+
+
+def _summary(found: Prediction) -> dict[str, Any]:
+    """The prediction without times."""
+    options, outline = found.options, found.subject.outline
+    data: dict[str, Any] = {
+        "design": found.subject.name,
+        "verdict": {
+            "kind": "prediction",
+            "law": options.law,
+            "holds": found.holds,
+            "text": verdict(found),
+            "advice": advice(found),
+            "agree": options.agree,
+        },
+        "material": {
+            "energy": found.law.text,
+            "constants": [
+                {"name": one.name, "value": one.value, "unit": one.unit, "source": one.source}
+                for one in constants_of(found.law)
+            ],
+            "winding": options.question["wound"],
+        },
+        "actuator": {
+            "length_mm": found.subject.design.actuator.length,
+            "slenderness": round(found.subject.slenderness, DIGITS),
+        },
+        "section": {
+            "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
+            "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
+            "islands": len(outline.islands),
+            "faults": [str(fault) for fault in outline.faults],
+        },
+    }
+    if found.has_answers:
+        data["stable_box_kpa"] = round(found.stable_box, DIGITS)
+        data["limits"] = [_limit(found, number) for number in _principal(found)]
+        data["difference"] = {
+            "cases": int(found.is_loaded.sum()),
+            "without_answer": found.unanswered,
+            "worst_of_displacement": _number(found.worst),
+            "median_of_displacement": _number(found.median),
+            "worst_between_meshes_mm": _most(found.discretisation),
+        }
+        data["solids"] = [_solid(found, mesh) for mesh in found.solids]
+    return data
+
+
+def _principal(found: Prediction) -> list[int]:
+    return [number for number, ray in enumerate(found.rays) if ray.is_principal]
+
+
+def _limit(found: Prediction, number: int) -> dict[str, Any]:
+    ray, result = found.rays[number], found.result(number)
+    coarse, last = found.results.get(("coarse", number)), result.last
+    ratios = _ratios(found, "standard", last)
+    return {
+        "of": ray.text,
+        "status": result.status.value,
+        "ends_at_kpa": _number(result.critical),
+        "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),
+        "volume_ratios": [_number(value) for value in ratios.tolist()],
+        "largest_stretch": None if last is None else _number(last.stretch),
+        "largest_stretch_at_mm": None
+        if last is None
+        else [round(value, 3) for value in last.stretch_at.tolist()],
+    }
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, DIGITS)
+
+
+def _most(values: FloatArray) -> float | None:
+    known = values[~np.isnan(values)]
+    return round(float(known.max()), DIGITS) if known.size else None
+
+
+def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
+    solid = found.solids[mesh]
+    results = [result for key, result in found.results.items() if key[0] == mesh]
+    counted = all((result.track[:, -1] >= 0).all() for result in results)
+    return {
+        "mesh": mesh,
+        "element": solid.element,
+        "form": "displacements" if found.law.volumetric_compliance is None else "mixed",
+        "triangles": len(solid.section.triangles),
+        "layers": solid.heights.size - 1,
+        "unknowns": solid.body().unknowns,
+        "rays": len(results),
+        "iterations": sum(result.statistics.iterations for result in results),
+        "stability": "checked by inertia" if counted else "not checked",
+    }
+
+
+def _timing(found: Prediction) -> Iterator[tuple[str, float, str]]:
+    """What the rays cost, summed over processes."""
+    for mesh in found.solids:
+        spent = [result.statistics for key, result in found.results.items() if key[0] == mesh]
+        for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):
+            name = what.removesuffix("_seconds").replace("seconds", "all")
+            yield f"{mesh} {name}", sum(getattr(one, what) for one in spent), "s"

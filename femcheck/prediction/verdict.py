@@ -1,0 +1,74 @@
+"""The prediction in a sentence that a person can act on."""
+
+from __future__ import annotations
+
+from femcheck.continuation.outcome import Status
+from femcheck.prediction.prediction import Prediction
+from femcheck.solid.winding import Wound
+
+__all__ = ["advice", "ending", "verdict"]
+
+VERBS = {
+    Status.LIMIT_POINT: "balloons",
+    Status.BUCKLED: "buckles",
+    Status.INVERTED: "is lost to the computation (an element turned inside out)",
+    Status.STEP_TOO_SMALL: "is lost to the computation (steps became too small)",
+    Status.LINEAR_SOLVER: "is lost to the computation (no solution of a linear system)",
+    Status.TIME_OUT: "is not followed further (time limit)",
+    Status.STOPPED: "is not followed (its process ended)",
+}
+
+
+def ending(status: Status, critical: float) -> str:
+    """How a combination or a ray ended, with the pressure where that says something."""
+    if status is Status.CONVERGED:
+        return str(status.value)
+    return f"{status.value} at P = {critical:.4g} kPa"
+
+
+def verdict(found: Prediction) -> str:
+    """What happens, and whether the beam's workspace exists."""
+    if found.failure is not None:
+        return f"no answer: {found.failure}"
+    loaded = int(found.is_loaded.sum())
+    if loaded == 0:
+        return "nothing to predict: no combination has pressure"
+    first = found.first_to_end
+    if found.unanswered == 0 and first is None:
+        agree = f"{100 * found.options.agree:g} %"
+        worst, median = (f"{100 * value:.3g} %" for value in (found.worst, found.median))
+        said = f"up to {found.largest:g} kPa all {loaded} combinations have a stable answer"
+        judged = "the beam holds" if found.holds else "the beam can not be trusted"
+        off = f"its tips are off by {median} (median) … {worst} of displacement"
+        return f"{_condition(found)}, {said}; {judged}: {off} (asked {agree})"
+    assert first is not None
+    ray, result = found.rays[first], found.result(first)
+    verb = VERBS[result.status]
+    lost = f"{found.unanswered} of {loaded} combinations have no stable answer"
+    exists = "does not exist" if found.unanswered == loaded else "exists in part only"
+    return (
+        f"{_condition(found)}, this section {verb} at {result.critical:.3g} kPa ({ray.text}); "
+        f"{lost}: the beam's workspace at {found.largest:g} kPa {exists}"
+    )
+
+
+def advice(found: Prediction) -> str | None:
+    """What may be done about it; None where there is nothing to be done."""
+    if not found.has_answers or found.first_to_end is None:
+        return None
+    box = f"stay below {found.stable_box:.3g} kPa in every supply"
+    if found.options.wound in (Wound.CHAMBERS, Wound.BOTH):
+        return f"{box}, or thicken the walls"
+    return f"{box}, or wind every chamber (--law wound shows what that does)"
+
+
+def _condition(found: Prediction) -> str:
+    wound = found.options.wound
+    if wound is None:
+        return "unreinforced"
+    places = {
+        Wound.CHAMBERS: "its chambers",
+        Wound.OUTER: "the outside",
+        Wound.BOTH: "its chambers and the outside",
+    }
+    return f"with {places[wound]} wound"

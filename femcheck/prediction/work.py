@@ -1,0 +1,55 @@
+"""All rays of all meshes as independent tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+
+from femcheck.check.case import Solid
+from femcheck.prediction.ray_trace import RayResult, RayTask, stopped_ray, trace_ray
+from femcheck.prediction.rays import Ray
+
+__all__ = ["RayKey", "RayWork"]
+
+RayKey = tuple[str, int]
+"""A mesh, "standard" or "coarse", and the number of a ray."""
+
+
+@dataclass
+class RayWork:
+    """What is to be traced; see `femcheck.check.work`.
+
+    solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, for an
+    estimate of the mesh's error. seconds : time limit of a ray [s].
+    """
+
+    solids: Mapping[str, Solid]
+    rays: Sequence[Ray]
+    seconds: float
+    results: dict[RayKey, RayResult] = field(default_factory=dict)
+
+    @property
+    def keys(self) -> list[RayKey]:
+        """The standard mesh's rays, then the principal ones of the coarse mesh."""
+        standard = [("standard", number) for number in range(len(self.rays))]
+        coarse = [("coarse", n) for n, ray in enumerate(self.rays) if ray.is_principal]
+        return standard + coarse
+
+    def begin(self, executor: Executor, waiting: Sequence[RayKey]) -> bool:
+        """Nothing comes before the rays."""
+        return True
+
+    def is_ready(self, key: RayKey) -> bool:
+        """All can be begun at once."""
+        return True
+
+    def submit(self, executor: Executor, key: RayKey) -> Future[RayResult]:
+        """Have a ray followed."""
+        mesh, number = key
+        task = RayTask(self.solids[mesh], self.rays[number], self.seconds)
+        return executor.submit(trace_ray, task)
+
+    def stopped(self, key: RayKey) -> RayResult:
+        """The result of a ray whose process died."""
+        return stopped_ray(self.rays[key[1]])
