@@ -39,7 +39,12 @@ class Pattern:
 
 
 def make_pattern(connectivity: IndexArray, blocks: IndexArray) -> Pattern:
-    """The pattern of elements with nodes `connectivity` (e, a), rows ordered by `blocks` (n,)."""
+    """The pattern of elements with nodes `connectivity` (e, a), rows ordered by `blocks` (n,).
+
+    Raises
+    ------
+    ValueError : a row that belongs to no element.
+    """
     from scipy.sparse import coo_array
 
     rows = int(blocks.max()) + 1
@@ -51,6 +56,8 @@ def make_pattern(connectivity: IndexArray, blocks: IndexArray) -> Pattern:
     graph.sort_indices()
     first, columns = graph.indptr.astype(np.int64), graph.indices.astype(np.int64)
     in_row = np.diff(first)
+    if not in_row.all():
+        raise ValueError("blocks: a row that belongs to no element")
     lengths = (3 * in_row)[:, None] - np.arange(3)
     starts = np.concatenate([[0], np.cumsum(lengths.ravel())])
     indices = np.empty(starts[-1], dtype=np.int64)

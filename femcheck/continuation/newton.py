@@ -14,12 +14,13 @@ from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.solid.equilibrium import Equilibrium, Forces
 from femcheck.solid.state import State
 
-__all__ = ["Newton"]
+__all__ = ["Newton", "unstable_directions"]
 
 SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 ROUNDING = 1e-10  # differences of the potential below this share of it are noise
 SHORTEST = 1 / 64
 LARGEST_TURN = 1.0  # rad that the tip plate may turn in one iteration
+LARGEST_MOVE = 0.5  # of the body's size that a node may move in one iteration
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,30 +59,45 @@ class Newton:
     ) -> Outcome:
         """The equilibrium near `start` at the pressures that the control settles on."""
         statistics = Statistics(steps=1)
+        at_start: int | None = None
+
+        def failed(status: Status) -> Outcome:
+            return Outcome(status, None, statistics=statistics, negative_at_start=at_start)
+
         state = start
         forces = _timed(problem, state, control.pressures, statistics)
         if not forces.least_volume_ratio > 0:
-            return Outcome(Status.INVERTED, None, statistics=statistics)
-        for _ in range(self.most_iterations):
+            return failed(Status.INVERTED)
+        for number in range(self.most_iterations):
             if time.perf_counter() > deadline:
-                return Outcome(Status.TIME_OUT, None, statistics=statistics)
+                return failed(Status.TIME_OUT)
             try:
                 step = _direction(problem, state, control, forces, solver, statistics)
             except SingularMatrixError:
-                return Outcome(Status.LINEAR_SOLVER, None, statistics=statistics)
+                return failed(Status.LINEAR_SOLVER)
+            unstable = unstable_directions(problem, solver)
+            at_start = unstable if number == 0 else at_start
             share = _share(problem, state, control, forces, step)
             if share is None:
-                return Outcome(Status.INVERTED, None, statistics=statistics)
+                return failed(Status.INVERTED)
             state = problem.moved(state, share * step)
             control.advance(share)
             forces = _timed(problem, state, control.pressures, statistics)
             if share == 1 and problem.support.extent(step)[0] <= self.tolerance:
                 residual = float(np.abs(forces.reduced).max())
-                negative = solver.negative_eigenvalues
-                if negative is not None:
-                    negative -= problem.hydrostatic_unknowns
-                return Outcome(Status.CONVERGED, state, 1.0, residual, negative, statistics)
-        return Outcome(Status.STEP_TOO_SMALL, None, statistics=statistics)
+                return Outcome(
+                    Status.CONVERGED, state, 1.0, residual, unstable, statistics, at_start
+                )
+        return failed(Status.STEP_TOO_SMALL)
+
+
+def unstable_directions(problem: Equilibrium, solver: DirectSolver) -> int | None:
+    """Negative eigenvalues of the factored tangent, less those of the hydrostatic pressures.
+
+    None where the solver can not count them.
+    """
+    negative = solver.negative_eigenvalues
+    return None if negative is None else negative - problem.hydrostatic_unknowns
 
 
 def _timed(
@@ -127,8 +143,10 @@ def _share(
     slope = float(forces.reduced @ step) if minimises else 0.0
     before = problem.potential(state, control.pressures) if minimises else 0.0
     noise = ROUNDING * max(abs(before), 1.0)
-    turn = problem.support.extent(step)[1]
-    share, intact = min(1.0, LARGEST_TURN / max(turn, LARGEST_TURN)), None
+    far, turn = problem.support.extent(step)
+    reach = LARGEST_MOVE * problem.body.size
+    share = min(1.0, reach / max(far, reach), LARGEST_TURN / max(turn, LARGEST_TURN))
+    intact = None
     while share >= SHORTEST:
         energy = problem.potential(problem.moved(state, share * step), control.pressures)
         if np.isfinite(energy):

@@ -51,7 +51,9 @@ class Outcome:
     reached : share of the load at which the last equilibrium was found.
     residual : largest out-of-balance force at it [mN].
     negative_eigenvalues : of the tangent there; 0 for a stable equilibrium, None where the solver
-        can not count them: stability was not checked then.
+        can not count them: stability was not checked then. In the mixed form those beyond the
+        ones of the hydrostatic pressures.
+    negative_at_start : the same at the state that the search began with, converged or not.
     """
 
     status: Status
@@ -60,3 +62,4 @@ class Outcome:
     residual: float = float("nan")
     negative_eigenvalues: int | None = None
     statistics: Statistics = field(default_factory=Statistics)
+    negative_at_start: int | None = None

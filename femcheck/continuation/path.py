@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from femcheck.continuation.mode import Mode
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.solid.state import State
 
@@ -39,6 +40,7 @@ class Path:
     points : all equilibria, in order, from rest.
     stops : the stable equilibria at the loads asked for; None where there is none.
     last : the stable equilibrium with the largest load; None where there is none at all.
+    mode : how stability is lost at a bifurcation; None otherwise.
     """
 
     status: Status
@@ -46,6 +48,7 @@ class Path:
     points: tuple[PathPoint, ...]
     stops: tuple[PathPoint | None, ...]
     last: PathPoint | None
+    mode: Mode | None = None
     statistics: Statistics = field(default_factory=Statistics)
 
 

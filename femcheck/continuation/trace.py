@@ -18,7 +18,8 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from femcheck.continuation.control import ArcControl, Mix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
-from femcheck.continuation.newton import Newton
+from femcheck.continuation.mode import unstable_mode
+from femcheck.continuation.newton import Newton, unstable_directions
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.continuation.path import Path, PathPoint, highest_load, is_limit, is_past
 from femcheck.solid.equilibrium import Equilibrium
@@ -56,7 +57,7 @@ class PathSteps:
     seconds : time limit of a trace [s].
     """
 
-    newton: Newton = field(default_factory=lambda: Newton(most_iterations=10))
+    newton: Newton = field(default_factory=lambda: Newton(most_iterations=8))
     first: float = 0.05
     longest: float = 0.4
     smallest: float = 1e-4
@@ -105,6 +106,8 @@ class _Trace:
         self._spent = Statistics()
         self._points: list[PathPoint] = []
         self._found: list[PathPoint | None] = [None] * len(stops)
+        self._failed: tuple[int | None, State, float] | None = None
+        self._lost: tuple[State, float] | None = None
         rest = problem.rest()
         worked_on = float(np.abs(direction) @ problem.volumes(rest))
         self._scale = np.array([worked_on or 1.0, self._stops[-1] or 1.0])
@@ -116,7 +119,11 @@ class _Trace:
         stable = [point for point in self._points if not is_past(point)]
         last = max(stable, key=lambda point: point.load) if stable else None
         points, found = tuple(self._points), tuple(self._found)
-        return Path(status, critical, points, found, last, self._spent)
+        mode = None
+        if status is Status.BUCKLED and self._lost is not None:
+            state, load = self._lost
+            mode = unstable_mode(self._problem, state, load * self._direction, self._solver)
+        return Path(status, critical, points, found, last, mode, self._spent)
 
     def _follow(self, beyond: float | None) -> tuple[Status, float]:
         rest = self._problem.rest()
@@ -134,6 +141,8 @@ class _Trace:
             tried, slope_there, length = self._step(here, slope, earlier, step)
             if isinstance(tried, Status):
                 step = length / 2
+                if ended is None and self._is_lost_ahead(here, slope, length):
+                    return Status.BUCKLED, here.load + self._rise(slope, step)
                 if tried is Status.TIME_OUT or step < self._steps.smallest:
                     return ended or (tried, here.load)
                 continue
@@ -155,6 +164,22 @@ class _Trace:
     def _has_all(self) -> bool:
         return self._found[-1] is not None
 
+    def _is_lost_ahead(self, here: PathPoint, slope: Slope, length: float) -> bool:
+        """Whether a short step failed because stability is lost on it.
+
+        Close to a bifurcation the tangent is nearly singular and iterations diverge; that they
+        began on the other side of it tells it from other failures.
+        """
+        short = 0 < self._rise(slope, length) <= self._steps.narrow * here.load
+        if not (short and self._failed is not None and self._failed[0]):
+            return False
+        self._lost = self._failed[1:]
+        return True
+
+    def _rise(self, slope: Slope, length: float) -> float:
+        """Change of the load on a step [kPa]."""
+        return float(slope.plane[1] * self._scale[1] * length)
+
     def _grown(self, point: PathPoint) -> float:
         return 1 + (point.volume - self._points[0].volume) / float(self._scale[0])
 
@@ -162,9 +187,8 @@ class _Trace:
         nothing = np.zeros(3)
         forces = self._problem.forces(rest, nothing)
         self._solver.factor(self._problem.tangent(rest, nothing, forces))
-        negative = self._solver.negative_eigenvalues
-        known = None if negative is None else negative - self._problem.hydrostatic_unknowns
-        point, slope = self._measured(rest, 0.0, known)
+        unstable = unstable_directions(self._problem, self._solver)
+        point, slope = self._measured(rest, 0.0, unstable)
         self._points.append(point)
         if self._stops[0] <= 0:
             self._note(point)
@@ -180,8 +204,11 @@ class _Trace:
     ) -> tuple[PathPoint | Status, Slope | None, float]:
         """The next point, or why there is none; its slope; the length that was tried."""
         ahead = [stop for stop in self._stops if stop > here.load * (1 + 1e-9)]
-        rise = slope.plane[1] * self._scale[1]
-        to_stop = (ahead[0] - here.load) / rise if ahead and not is_past(here) else np.inf
+        to_stop = (
+            (ahead[0] - here.load) / self._rise(slope, 1.0)
+            if ahead and not is_past(here)
+            else np.inf
+        )
         stops = length >= to_stop
         length = min(length, to_stop)
         at = np.array([here.volume, here.load]) / self._scale + length * slope.plane
@@ -201,6 +228,7 @@ class _Trace:
         self._spent.add(outcome.statistics)
         self._iterations = outcome.statistics.iterations
         if outcome.state is None:
+            self._failed = (outcome.negative_at_start, guess, float(at[1] * self._scale[1]))
             return outcome.status, None, length
         if not stops and to_stop < np.inf and control.load > ahead[0]:
             # a path that stiffens rises more than its tangent: back to the stop it went past
@@ -243,7 +271,10 @@ class _Trace:
     ) -> tuple[Status, float]:
         """What ended the stable part between two points, and at which load."""
         stable, lost, low, high = here, there, 0.0, length
-        while not is_limit(lost) and lost.load - stable.load > self._steps.narrow * lost.load:
+        top = _top(stable, lost)
+        while not is_limit(lost) and top - stable.load > self._steps.narrow * top:
+            if high - low < self._steps.smallest:  # unstable from rest on, say
+                break
             middle = (low + high) / 2
             tried, _, _ = self._step(here, slope, earlier, middle)
             if isinstance(tried, Status):
@@ -252,6 +283,13 @@ class _Trace:
                 lost, high = tried, middle
             else:
                 stable, low = tried, middle
+            top = _top(stable, lost)
         if is_limit(lost):
-            return Status.LIMIT_POINT, highest_load(stable, lost)
-        return Status.BUCKLED, (stable.load + lost.load) / 2
+            return Status.LIMIT_POINT, top
+        self._lost = (lost.state, lost.load)
+        return Status.BUCKLED, (stable.load + top) / 2
+
+
+def _top(stable: PathPoint, lost: PathPoint) -> float:
+    """Largest load between two points; past a limit point that of the second is less."""
+    return highest_load(stable, lost) if lost.growth < 0 else lost.load

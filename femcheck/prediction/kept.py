@@ -33,6 +33,8 @@ def write_ray(path: Path, result: RayResult, digest: str) -> None:
         "status": np.array(result.status.name),
         "critical": np.array(result.critical),
         "track": result.track,
+        "mode_at": result.mode_at,
+        "mode_share": np.array(result.mode_share),
         "counts": np.array([spent.steps, spent.iterations]),
         "seconds": np.array(
             [spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds]
@@ -65,6 +67,8 @@ def read_ray(path: Path, digest: str) -> RayResult | None:
                 tuple(answers),
                 last,
                 kept["track"],
+                kept["mode_at"],
+                float(kept["mode_share"]),
                 Statistics(steps, iterations, *kept["seconds"].tolist()),
             )
     except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from femcheck.check.case import Solid, workshop
+from femcheck.continuation.mode import LOCAL
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.continuation.path import Path
 from femcheck.continuation.trace import PathSteps
@@ -42,6 +43,8 @@ class RayResult:
     answers : at the stops; None where there is none.
     last : the last stable equilibrium; None where not even rest could be computed.
     track : (n, 8) all equilibria, see `TRACK`.
+    mode_at : (3,) where it buckles, undeformed [mm]. mode_share : of the nodes that take part. NaN
+        where it does not buckle.
     """
 
     status: Status
@@ -49,7 +52,14 @@ class RayResult:
     answers: tuple[Answer | None, ...]
     last: Answer | None
     track: FloatArray
+    mode_at: FloatArray = field(default_factory=lambda: np.full(3, np.nan))
+    mode_share: float = float("nan")
     statistics: Statistics = field(default_factory=Statistics)
+
+    @property
+    def creases(self) -> bool:
+        """Whether what buckles is a small part of a surface, and not the actuator."""
+        return self.mode_share < LOCAL
 
 
 def trace_ray(task: RayTask) -> RayResult:
@@ -63,8 +73,17 @@ def trace_ray(task: RayTask) -> RayResult:
         for point in path.stops
     )
     last = read_off(shop.problem, shop.shapes, path.last) if path.last else None
-    track = _track(shop.problem, path)
-    return RayResult(path.status, path.critical, answers, last, track, path.statistics)
+    found = RayResult(
+        path.status,
+        path.critical,
+        answers,
+        last,
+        _track(shop.problem, path),
+        statistics=path.statistics,
+    )
+    if path.mode is None:
+        return found
+    return replace(found, mode_at=path.mode.place, mode_share=path.mode.share)
 
 
 def _track(problem: Equilibrium, path: Path) -> FloatArray:

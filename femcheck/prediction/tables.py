@@ -22,7 +22,7 @@ __all__ = ["tables_of"]
 MORE = ",ends_at_kpa,largest_stretch,stretch_x,stretch_y,stretch_z"
 LIMITS = (
     "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
-    "volume_ratio_3,largest_stretch,stretch_x,stretch_y,stretch_z,points,iterations"
+    "volume_ratio_3,largest_stretch,stretch_x,stretch_y,stretch_z,mode_x,mode_y,mode_z,mode_share,points,iterations"
 )
 AXIS = "d1,d2,d3,load_kpa,z,stretch,curvature_x,curvature_y,beam_stretch,beam_x,beam_y"
 
@@ -97,6 +97,7 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
             *cells([result.critical, math.nan if last is None else last.load]),
             *cells(_ratios(found, mesh, last)),
             *_stretched(last),
+            *cells([*result.mode_at, result.mode_share]),
             len(result.track),
             result.statistics.iterations,
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from femcheck.continuation.outcome import Status
 from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.ray_trace import RayResult
 from femcheck.solid.winding import Wound
 
 __all__ = ["advice", "ending", "verdict"]
@@ -43,11 +44,12 @@ def verdict(found: Prediction) -> str:
         return f"{_condition(found)}, {said}; {judged}: {off} (asked {agree})"
     assert first is not None
     ray, result = found.rays[first], found.result(first)
-    verb = VERBS[result.status]
+    verb = "creases" if result.creases else VERBS[result.status]
     lost = f"{found.unanswered} of {loaded} combinations have no stable answer"
     exists = "does not exist" if found.unanswered == loaded else "exists in part only"
     return (
-        f"{_condition(found)}, this section {verb} at {result.critical:.3g} kPa ({ray.text}); "
+        f"{_condition(found)}, this section {verb} at {result.critical:.3g} kPa "
+        f"({ray.text}{_place(result)}); "
         f"{lost}: the beam's workspace at {found.largest:g} kPa {exists}"
     )
 
@@ -60,6 +62,14 @@ def advice(found: Prediction) -> str | None:
     if found.options.wound in (Wound.CHAMBERS, Wound.BOTH):
         return f"{box}, or thicken the walls"
     return f"{box}, or wind every chamber (--law wound shows what that does)"
+
+
+def _place(result: RayResult) -> str:
+    """Where it creases."""
+    if not result.creases:
+        return ""
+    x, y, z = result.mode_at
+    return f", near ({x:.1f}, {y:.1f}, {z:.1f}) mm"
 
 
 def _condition(found: Prediction) -> str:

@@ -41,6 +41,11 @@ class Continuum:
     has_pair: bool
 
     @cached_property
+    def size(self) -> float:
+        """Its largest extent [mm]."""
+        return float(np.ptp(self.nodes, axis=0).max())
+
+    @cached_property
     def corner_nodes(self) -> IndexArray:
         """(m,) nodes that are a corner of an element: where the hydrostatic pressure lives."""
         return np.unique(self.connectivity[:, : self.corner_values.shape[1]])

@@ -20,12 +20,13 @@ SOURCE = "Cook's membrane, plane strain"
 
 
 def corner(edges: int, element: str, *, mixed: bool) -> float:
-    """u_y of the corner [mm]."""
+    """u_y of the corner [mm]; NaN, which holds nowhere, if the load is not reached."""
     poisson_ratio = LAME / (2 * (LAME + SHEAR))
     law = NeoHookean(2 * SHEAR * (1 + poisson_ratio), poisson_ratio, mixed=mixed)
     body, node = cook(law, edges, element)
     path = PathSteps().trace(body.problem, body.predictor, DIRECTION, [TRACTION], body.solver)
-    assert path.stops[0] is not None, path.status.value
+    if path.stops[0] is None:
+        return float("nan")
     return float(path.stops[0].state.x[node, 1] - body.problem.body.nodes[node, 1])
 
 

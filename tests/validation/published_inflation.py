@@ -62,7 +62,7 @@ def tube_convergence_rows() -> Iterator[Row]:
 
 
 def closed_tube_rows(across: int, along: int, tolerance: float) -> Iterator[Row]:
-    """The thrust on the cap counts; without its volume the limit is THRUST.
+    """The thrust on the cap counts: without the cap the limit is 47.6 kPa, turned round 50.7.
 
     tolerance : of the limit, relative; errors are 2.3e-3, 1.6e-4 and 1.7e-5 with 2, 4 and 8 edges
         along the radius.
@@ -77,6 +77,8 @@ def closed_tube_rows(across: int, along: int, tolerance: float) -> Iterator[Row]
     path = followed(body, 2 * published, longest=0.05)
     name = f"closed tube, {across} × {along}"
     yield yes(f"{name}: ends at a limit point", source, path.status is Status.LIMIT_POINT)
+    if path.status is not Status.LIMIT_POINT:
+        return
     yield Row(f"{name}: limit [kPa]", source, exact, path.critical, tolerance * exact)
     yield from work_rows(name, body, path)
 
@@ -95,6 +97,8 @@ def sphere_rows(ratio: float, edges: int, tolerance: float) -> Iterator[Row]:
     body = sphere(ratio, RUBBER, edges, edges)
     path = followed(body, 2 * MU * published, beyond=2.5**3)
     yield yes(f"{name}: ends at a limit point", source, path.status is Status.LIMIT_POINT)
+    if path.status is not Status.LIMIT_POINT:
+        return
     limit = path.critical / MU
     yield Row(f"{name}: limit P/μ", source, published, limit, tolerance * published)
     at = stretches(body, path)
@@ -156,12 +160,16 @@ def work_rows(name: str, body: Published, path: Path) -> Iterator[Row]:
 
 
 def pressure_at(body: Published, stretch: float) -> float:
-    """P [kPa] at which the cavity of a tube of constant length has λa, in steps of 0.05 of it."""
+    """P [kPa] at which the cavity of a tube of constant length has λa, in steps of 0.05 of it.
+
+    NaN, which holds nowhere, if there is no way there.
+    """
     state, load = body.problem.rest(), 0.0
     for step in np.linspace(1, stretch, round((stretch - 1) / 0.05) + 1)[1:]:
         control = ArcControl(DIRECTION, load, Mix(1 / body.rest_volume, 0.0), float(step) ** 2)
         found = Newton().follow(body.problem, state, control, body.solver)
-        assert found.state is not None, f"λa = {step:.3f}: {found.status.value}"
+        if found.state is None:
+            return float("nan")
         state, load = found.state, control.load
     return load
 
@@ -191,6 +199,6 @@ def yes(check: str, source: str, holds: bool) -> Row:
 
 
 def told_apart(check: str, source: str, right: float, measured: float, tolerance: float) -> Row:
-    """What locks must miss the tolerance that others keep."""
+    """What locks must miss the tolerance that others keep; to find nothing is not to miss it."""
     misses = abs(measured - right) > tolerance
     return yes(f"{check} in displacements alone, {measured:.4g}, is told apart", source, misses)

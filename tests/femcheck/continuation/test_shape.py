@@ -1,5 +1,7 @@
 """States taken apart into strains and warping, and put together again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from femcheck.solid.body import Body
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.plate import rotation
 from femcheck.solid.state import State, placed, rest_state
-from tests.femcheck.lattice import LENGTH, bent_state, lattice_body
+from tests.femcheck.lattice import LENGTH, bent_state, lattice_body, random_direction
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +29,22 @@ def test_there_and_back(element: str) -> None:
         np.testing.assert_allclose(back.x, state.x, atol=1e-10)
         np.testing.assert_allclose(back.tip, state.tip, atol=1e-10)
         np.testing.assert_allclose(back.turn, state.turn, atol=1e-10)
+
+
+@pytest.mark.parametrize("element", ["wedge18", "hex27", "tet10"])
+def test_hydrostatic_pressures_are_carried_as_they_are(element: str) -> None:
+    """There and back without rounding, and combined linearly with everything else."""
+    body = lattice_body(element)
+    shapes, pressures = Shapes(body), random_direction(body.corner_nodes.size, 4)
+    bent = replace(bent_state(body, (0.5, -0.7, 0.3), 0.05), hydrostatic=pressures)
+    without = replace(bent, hydrostatic=np.zeros(0))
+    back = shapes.state(shapes.of(bent))
+    np.testing.assert_array_equal(back.hydrostatic, pressures)
+    np.testing.assert_array_equal(back.x, shapes.state(shapes.of(without)).x)
+    assert shapes.of(bent).size == shapes.of(without).size + pressures.size
+    rest = replace(rest_state(body), hydrostatic=np.ones(pressures.size))
+    twice = shapes.state(2 * shapes.of(bent) - shapes.of(rest))
+    np.testing.assert_array_equal(twice.hydrostatic, 2 * pressures - 1)
 
 
 def test_nothing_at_rest(body: Body) -> None:

@@ -268,15 +268,11 @@ def test_nearly_incompressible_material_tends_to_incompressible() -> None:
 
 
 @pytest.mark.parametrize(
-    ("element", "finer", "measured"),
-    [
-        ("wedge18", (16, 4, 2), (0.145, 0.045)),
-        ("hex27", (12, 3, 1), (0.146, 0.059)),
-        ("tet10", (16, 4, 2), (0.157, 0.058)),
-    ],
+    ("element", "measured"),
+    [("wedge18", (0.145, 0.057)), ("hex27", (0.146, 0.059)), ("tet10", (0.157, 0.074))],
 )
 def test_both_forms_tend_to_the_same_equilibrium(
-    element: str, finer: tuple[int, int, int], measured: tuple[float, float]
+    element: str, measured: tuple[float, float]
 ) -> None:
     """ν = 0.45, mixed and displacement form, on an eccentric tube of few elements and of more.
 
@@ -285,8 +281,8 @@ def test_both_forms_tend_to_the_same_equilibrium(
     volume comes in tenfold.
     """
     off = []
-    for around, layers, across in ((8, 2, 1), finer):
-        body = tube(3.0, 5.0, 15.0, around, layers, element, shift=0.5, across=across)
+    for around, layers in ((8, 2), (12, 3)):
+        body = tube(3.0, 5.0, 15.0, around, layers, element, shift=0.5)
         problem = actuator(body, NeoHookean(300.0, 0.45, mixed=False))
         mixed = problem.with_law(NeoHookean(300.0, 0.45, mixed=True))
         tips = [solved(each, np.array([20.0, 0.0, 0.0])).tip for each in (problem, mixed)]
