@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from femcheck.continuation.direct import DirectSolver, SingularMatrixError, dire
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
+from femcheck.continuation.trace import PathSteps
 from femcheck.material.fibre import Thread
 from femcheck.material.law import Law
 from femcheck.mesh.extrusion import Extrusion, extrude
@@ -133,6 +135,7 @@ class Workshop:
     solver: DirectSolver
 
 
+LOST = (Status.INVERTED, Status.STEP_TOO_SMALL, Status.LINEAR_SOLVER)
 _WORKSHOPS: dict[str, Workshop] = {}
 MOST_WORKSHOPS = 2  # factors are large; a check goes back and forth between two meshes at most
 
@@ -158,6 +161,8 @@ def solve_case(case: Case) -> CaseResult:
     guess = None if case.guess is None else shop.shapes.state(case.guess)
     steps = LoadSteps(seconds=case.seconds)
     outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
+    if outcome.status in LOST:
+        outcome = _followed(shop, case, outcome)
     if outcome.state is None:
         return CaseResult(outcome)
     return CaseResult(
@@ -166,6 +171,20 @@ def solve_case(case: Case) -> CaseResult:
         shop.problem.volumes(outcome.state),
         shop.problem.strain_energy(outcome.state),
     )
+
+
+def _followed(shop: Workshop, case: Case, failed: Outcome) -> Outcome:
+    """Where load steps found nothing: the path from rest, which tells a branch from a failure."""
+    spent = failed.statistics
+    load = float(np.abs(case.pressures).max())
+    steps = PathSteps(seconds=case.seconds - spent.seconds)
+    path = steps.trace(shop.problem, shop.shapes, case.pressures / load, [load], shop.solver)
+    spent.add(path.statistics)
+    spent.seconds += path.statistics.seconds
+    found = path.stops[0]
+    if found is not None:
+        return Outcome(Status.CONVERGED, found.state, 1.0, math.nan, found.unstable, spent)
+    return Outcome(path.status, None, path.critical / load, statistics=spent)
 
 
 def rest_slopes(solid: Solid) -> FloatArray | None:

@@ -33,6 +33,7 @@ class Tips:
     tips : (27, 3) [mm] in the order of `pressure_grid`; NaN without an answer.
     volume_ratios : (27, 3) of each supply's chambers to their undeformed volume; NaN without any.
     statuses : (27,) how each case ended.
+    reached : (27,) share of the load at the last equilibrium; 1 with an answer.
     """
 
     mesh: str
@@ -40,6 +41,7 @@ class Tips:
     tips: FloatArray
     volume_ratios: FloatArray
     statuses: tuple[Status, ...]
+    reached: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,17 +165,17 @@ def compare(
 
 def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:
     tips, ratios = np.full((NODES, 3), np.nan), np.full((NODES, 3), np.nan)
-    statuses = [Status.STOPPED] * NODES
+    statuses, reached = [Status.STOPPED] * NODES, np.zeros(NODES)
     centroid = np.append(stage.solid.section.moments.centroid, 0.0)
     undeformed = stage.solid.section.moments.chamber_areas * subject.design.actuator.length
     for node in all_nodes():
         result, row = results[stage.name, node], node_index(*node)
-        statuses[row] = result.status
+        statuses[row], reached[row] = result.status, result.outcome.reached
         if result.outcome.state is not None and result.volumes is not None:
             tips[row] = result.outcome.state.tip - centroid
             with np.errstate(invalid="ignore", divide="ignore"):
                 ratios[row] = np.where(undeformed > 0, result.volumes / undeformed, np.nan)
-    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses))
+    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached)
 
 
 def _extrapolated(low: Tips, high: Tips) -> Tips:
@@ -185,4 +187,5 @@ def _extrapolated(low: Tips, high: Tips) -> Tips:
         first if first is not Status.CONVERGED else second
         for first, second in zip(low.statuses, high.statuses, strict=True)
     ]
-    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse))
+    reached = np.minimum(low.reached, high.reached)
+    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached)

@@ -13,7 +13,7 @@ from beamopt.cli.progress import console
 from femcheck.cli.report import notes_of
 from femcheck.material.catalogue import constants_of
 from femcheck.prediction.prediction import Prediction
-from femcheck.prediction.verdict import advice, ending, verdict
+from femcheck.prediction.verdict import advice, verdict
 
 __all__ = ["report_prediction"]
 
@@ -68,9 +68,13 @@ def _combinations(found: Prediction) -> Table:
             f"{difference:.3f}" if answered else "–",
             f"{100 * found.share[row]:.2f} %" if answered else "–",
             f"{answer.stretch:.2f}" if answer is not None else "–",
-            ending(found.status(row), found.ended_at(row)),
+            found.status(row).ending(found.ended_at(row)) + _snapped(found.snap(row)),
         )
     return table
+
+
+def _snapped(load: float) -> str:
+    return "" if np.isnan(load) else f", snapped at {load:.4g} kPa"
 
 
 def _limits(found: Prediction) -> Table:
@@ -78,21 +82,18 @@ def _limits(found: Prediction) -> Table:
     table = Table(title="limits", title_justify="left")
     for name in ("pressure in", "ends", "on the coarse mesh", "chambers grow", "largest stretch"):
         table.add_column(name)
-    length = found.subject.design.actuator.length
     for number, ray in enumerate(found.rays):
         result, last = found.result(number), found.result(number).last
         if not ray.is_principal or last is None:
             continue
         coarse = found.results.get(("coarse", number))
-        rest = found.solids["standard"].section.moments.chamber_areas * length
-        loaded = np.abs(np.array(ray.direction))
-        growth = float(last.volumes @ loaded) / max(float(rest @ loaded), 1e-300)
+        growth = found.growth(number)
         x, y, z = last.stretch_at
         table.add_row(
             ray.text,
-            "–" if np.isnan(result.critical) else ending(result.status, result.critical),
+            "–" if np.isnan(result.critical) else result.status.ending(result.critical),
             "–" if coarse is None or np.isnan(coarse.critical) else f"{coarse.critical:.4g} kPa",
-            f"{growth:.3g} times at {last.load:.3g} kPa" if rest @ loaded > 0 else "–",
+            f"{growth:.3g} times at {last.load:.3g} kPa" if np.isfinite(growth) else "–",
             f"{last.stretch:.2f} at ({x:.1f}, {y:.1f}, {z:.1f}) mm",
         )
     return table

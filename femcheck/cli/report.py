@@ -112,6 +112,8 @@ def _table(checked: Checked) -> Table:
             f"{compared.displacement[row]:.2f}",
             f"{difference:.4f}" if answered else "–",
             f"{100 * share:.3f} %" if answered else "–",
-            compared.final.statuses[row].value,
+            compared.final.statuses[row].ending(
+                compared.final.reached[row] * float(np.abs(pressures).max())
+            ),
         )
     return table

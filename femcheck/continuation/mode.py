@@ -1,4 +1,4 @@
-"""The motion by which an equilibrium is lost at a bifurcation: where it is, and how local."""
+"""The motion by which an equilibrium is lost: where it is, and how local."""
 
 from __future__ import annotations
 

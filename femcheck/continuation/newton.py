@@ -19,6 +19,7 @@ __all__ = ["Newton", "unstable_directions"]
 SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 ROUNDING = 1e-10  # differences of the potential below this share of it are noise
 SHORTEST = 1 / 64
+DIVERGED = 5.0  # a step so much longer than the shortest before it: on a path, give up
 LARGEST_TURN = 1.0  # rad that the tip plate may turn in one iteration
 LARGEST_MOVE = 0.5  # of the body's size that a node may move in one iteration
 
@@ -60,6 +61,7 @@ class Newton:
         """The equilibrium near `start` at the pressures that the control settles on."""
         statistics = Statistics(steps=1)
         at_start: int | None = None
+        least = np.inf
 
         def failed(status: Status) -> Outcome:
             return Outcome(status, None, statistics=statistics, negative_at_start=at_start)
@@ -77,13 +79,17 @@ class Newton:
                 return failed(Status.LINEAR_SOLVER)
             unstable = unstable_directions(problem, solver)
             at_start = unstable if number == 0 else at_start
+            far = problem.support.extent(step)[0]
+            if not control.is_fixed and far > DIVERGED * least:
+                return failed(Status.STEP_TOO_SMALL)
+            least = min(least, far)
             share = _share(problem, state, control, forces, step)
             if share is None:
                 return failed(Status.INVERTED)
             state = problem.moved(state, share * step)
             control.advance(share)
             forces = _timed(problem, state, control.pressures, statistics)
-            if share == 1 and problem.support.extent(step)[0] <= self.tolerance:
+            if share == 1 and far <= self.tolerance:
                 residual = float(np.abs(forces.reduced).max())
                 return Outcome(
                     Status.CONVERGED, state, 1.0, residual, unstable, statistics, at_start

@@ -22,6 +22,12 @@ class Status(Enum):
     TIME_OUT = "time limit reached"
     STOPPED = "its process ended before it was solved"
 
+    def ending(self, pressure: float) -> str:
+        """How a case ended, and at which pressure [kPa] unless it has an answer."""
+        if self is Status.CONVERGED:
+            return str(self.value)
+        return f"{self.value} at P = {pressure:.4g} kPa"
+
 
 @dataclass
 class Statistics:

@@ -40,7 +40,9 @@ class Path:
     points : all equilibria, in order, from rest.
     stops : the stable equilibria at the loads asked for; None where there is none.
     last : the stable equilibrium with the largest load; None where there is none at all.
-    mode : how stability is lost at a bifurcation; None otherwise.
+    snaps : loads of limit points behind which the path became stable again at a higher load: the
+        body jumps from one stable shape to another there.
+    mode : the motion by which stability is lost; None where it is not, or is not known.
     """
 
     status: Status
@@ -48,6 +50,7 @@ class Path:
     points: tuple[PathPoint, ...]
     stops: tuple[PathPoint | None, ...]
     last: PathPoint | None
+    snaps: tuple[float, ...] = ()
     mode: Mode | None = None
     statistics: Statistics = field(default_factory=Statistics)
 

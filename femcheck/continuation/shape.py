@@ -62,8 +62,9 @@ class Shapes:
         shape = self.of(state)
         turns, moves = shape[:count].reshape(-1, 3), shape[count : 2 * count].reshape(-1, 3)
         middle = (heights[1:] + heights[:-1]) / 2
-        strains = np.column_stack([moves[:, 2], turns[:, 0], turns[:, 1]]) / steps[:, None]
-        return np.column_stack([middle, strains])
+        chords = moves + np.column_stack([np.zeros((steps.size, 2)), steps])
+        stretch = _unrolled(turns, chords)[:, 2] / steps - 1
+        return np.column_stack([middle, stretch, turns[:, :2] / steps[:, None]])
 
     def state(self, shape: FloatArray) -> State:
         """The state of a shape; the base is held and the tip face plane, whatever its warping."""
@@ -88,6 +89,16 @@ def _rigid_motion(flat: FloatArray, now: FloatArray) -> tuple[FloatArray, FloatA
     mirror = np.sign(np.linalg.det(Vt.T @ U.T))
     R = Vt.T @ np.diag([1.0, 1.0, mirror]) @ U.T
     return R, there - R @ middle
+
+
+def _unrolled(turns: FloatArray, chords: FloatArray) -> FloatArray:
+    """(k, 3) ∫ Rᵀ h' along helices that end at `chords`, turned by `turns` [rad]."""
+    angle = np.linalg.norm(turns, axis=1, keepdims=True)
+    half = angle / 2
+    factor = np.full_like(angle, 1 / 12)
+    np.divide(1 - half / np.tan(half + (half == 0)), angle**2, out=factor, where=angle > 1e-3)
+    across = np.cross(turns, chords)
+    return np.asarray(chords - across / 2 + factor * np.cross(turns, across))
 
 
 def _vector(R: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -81,7 +81,7 @@ def axis_figure(found: Prediction) -> Figure:
 
     Of the last stable equilibrium: what clamp and cap disturb is where the solid is not constant.
     """
-    figure = new_figure(7.0, 5.2)
+    figure = new_figure(7.0, 5.8, below=0.12)
     bending, stretching = figure.subplots(2, 1, sharex=True)
     length = found.subject.design.actuator.length
     for number, ray in enumerate(found.rays):
@@ -94,8 +94,9 @@ def axis_figure(found: Prediction) -> Figure:
         z, stretch, *curvature = last.axis.T
         along = beam[1:] / max(float(np.linalg.norm(beam[1:])), 1e-300)
         label = f"{ray.text}, {last.load:.3g} kPa"
-        bending.plot(z, 1e3 * along @ np.array(curvature), dashes, color=colour, label=label)
-        stretching.plot(z, 100 * stretch, dashes, color=colour)
+        look: dict[str, Any] = {"color": colour, "ls": dashes, "marker": ".", "ms": 4}
+        bending.plot(z, 1e3 * along @ np.array(curvature), label=label, **look)
+        stretching.plot(z, 100 * stretch, **look)
         for axes, value in ((bending, 1e3 * np.hypot(*beam[1:])), (stretching, 100 * beam[0])):
             axes.plot([0, length], [value, value], dashes, color=colour, lw=0.7, alpha=0.6)
     bending.set_ylabel("curvature, the beam's way [1/m]")
@@ -110,5 +111,5 @@ def axis_figure(found: Prediction) -> Figure:
     bending.set_title(f"{found.subject.name}: {found.options.title}, {slenderness}")
     bending.plot([], [], color=ASIDE_COLOUR, lw=0.7, label="thin: the beam")
     bending.plot([], [], color=ASIDE_COLOUR, lw=0.7, ls=(0, (1, 3)), label="a diameter from an end")
-    bending.legend(loc="best")
+    figure.legend(*bending.get_legend_handles_labels(), loc="lower center", ncols=3)
     return figure

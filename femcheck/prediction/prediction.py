@@ -84,6 +84,19 @@ class Prediction:
             return float("nan")
         return self.result(place[0]).critical
 
+    def snap(self, row: int) -> float:
+        """Load at which a combination's ray jumps to another shape on its way [kPa]; NaN: never."""
+        place = self.places[row]
+        snaps = () if place is None else self.result(place[0]).snaps
+        return snaps[0] if place is not None and snaps and snaps[0] < place[1] else float("nan")
+
+    def growth(self, number: int) -> float:
+        """Volume of a ray's chambers at its last stable equilibrium over that at rest."""
+        last, weights = self.result(number).last, np.abs(np.array(self.rays[number].direction))
+        rest = self.solids["standard"].section.moments.chamber_areas @ weights
+        rest = rest * self.subject.design.actuator.length
+        return float(last.volumes @ weights / rest) if last is not None and rest > 0 else np.nan
+
     @cached_property
     def is_loaded(self) -> NDArray[np.bool_]:
         """(27,) whether any supply has pressure."""

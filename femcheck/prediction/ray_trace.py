@@ -43,8 +43,9 @@ class RayResult:
     answers : at the stops; None where there is none.
     last : the last stable equilibrium; None where not even rest could be computed.
     track : (n, 8) all equilibria, see `TRACK`.
-    mode_at : (3,) where it buckles, undeformed [mm]. mode_share : of the nodes that take part. NaN
-        where it does not buckle.
+    snaps : loads at which it jumped to another stable shape [kPa].
+    mode_at : (3,) where stability is lost, undeformed [mm]. mode_share : of the nodes that take
+        part. NaN where it is not lost, or where that is not known.
     """
 
     status: Status
@@ -52,6 +53,7 @@ class RayResult:
     answers: tuple[Answer | None, ...]
     last: Answer | None
     track: FloatArray
+    snaps: tuple[float, ...] = ()
     mode_at: FloatArray = field(default_factory=lambda: np.full(3, np.nan))
     mode_share: float = float("nan")
     statistics: Statistics = field(default_factory=Statistics)
@@ -59,7 +61,7 @@ class RayResult:
     @property
     def creases(self) -> bool:
         """Whether what buckles is a small part of a surface, and not the actuator."""
-        return self.mode_share < LOCAL
+        return self.status is Status.BUCKLED and self.mode_share < LOCAL
 
 
 def trace_ray(task: RayTask) -> RayResult:
@@ -79,6 +81,7 @@ def trace_ray(task: RayTask) -> RayResult:
         answers,
         last,
         _track(shop.problem, path),
+        snaps=path.snaps,
         statistics=path.statistics,
     )
     if path.mode is None:

@@ -27,7 +27,7 @@ class Ray:
     @property
     def name(self) -> str:
         """For files: the direction in per cent."""
-        return "_".join(f"{100 * part:.6g}" for part in self.direction)
+        return "_".join(f"{100 * part:.10g}" for part in self.direction)
 
     @property
     def supplies(self) -> tuple[int, ...]:

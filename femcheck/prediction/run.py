@@ -131,14 +131,7 @@ def _write(folder: CheckFolder, found: Prediction) -> None:
     if last is not None and last.load > 0:
         ray, result = found.rays[shown], found.result(shown)
         pressures = last.load * np.array(ray.direction)
-        said = f"{found.options.law}, chambers grow to {_growth(found, shown):.2g} times"
+        said = f"{found.options.law}, chambers grow to {found.growth(shown):.2g} times"
         if result.status is not Status.CONVERGED:
             said += f"; {result.status.value} at {result.critical:.3g} kPa"
         picture.draw(folder.path, found.subject, found.solids["standard"], last.x, pressures, said)
-
-
-def _growth(found: Prediction, number: int) -> float:
-    track = found.result(number).track
-    volume = track[:, 1:4] @ np.abs(np.array(found.rays[number].direction))
-    stable = track[:, 0] <= np.max(track[:, 0])
-    return float((volume[stable] / volume[0]).max()) if volume[0] > 0 else 1.0

@@ -19,7 +19,7 @@ from femcheck.prediction.verdict import advice, verdict
 
 __all__ = ["tables_of"]
 
-MORE = ",ends_at_kpa,largest_stretch,stretch_x,stretch_y,stretch_z"
+MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_x,stretch_y,stretch_z"
 LIMITS = (
     "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_x,stretch_y,stretch_z,mode_x,mode_y,mode_z,mode_share,points,iterations"
@@ -68,7 +68,7 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(_ratios(found, mesh, answer)),
                 found.status(row, mesh).value,
-                *cells([critical]),
+                *cells([critical, found.snap(row)]),
                 *_stretched(answer),
             )
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from femcheck.continuation.outcome import Status
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.solid.winding import Wound
 
-__all__ = ["advice", "ending", "verdict"]
+__all__ = ["advice", "verdict"]
 
+BALLOON = 1.5  # growth of the chambers at a limit point above which it is no wall that snaps
 VERBS = {
-    Status.LIMIT_POINT: "balloons",
     Status.BUCKLED: "buckles",
     Status.INVERTED: "is lost to the computation (an element turned inside out)",
     Status.STEP_TOO_SMALL: "is lost to the computation (steps became too small)",
@@ -18,13 +20,6 @@ VERBS = {
     Status.TIME_OUT: "is not followed further (time limit)",
     Status.STOPPED: "is not followed (its process ended)",
 }
-
-
-def ending(status: Status, critical: float) -> str:
-    """How a combination or a ray ended, with the pressure where that says something."""
-    if status is Status.CONVERGED:
-        return str(status.value)
-    return f"{status.value} at P = {critical:.4g} kPa"
 
 
 def verdict(found: Prediction) -> str:
@@ -41,14 +36,13 @@ def verdict(found: Prediction) -> str:
         said = f"up to {found.largest:g} kPa all {loaded} combinations have a stable answer"
         judged = "the beam holds" if found.holds else "the beam can not be trusted"
         off = f"its tips are off by {median} (median) … {worst} of displacement"
-        return f"{_condition(found)}, {said}; {judged}: {off} (asked {agree})"
+        return f"{_condition(found)}, {said}{_snaps(found)}; {judged}: {off} (asked {agree})"
     assert first is not None
     ray, result = found.rays[first], found.result(first)
-    verb = "creases" if result.creases else VERBS[result.status]
     lost = f"{found.unanswered} of {loaded} combinations have no stable answer"
     exists = "does not exist" if found.unanswered == loaded else "exists in part only"
     return (
-        f"{_condition(found)}, this section {verb} at {result.critical:.3g} kPa "
+        f"{_condition(found)}, this section {_verb(found, first)} at {result.critical:.3g} kPa "
         f"({ray.text}{_place(result)}); "
         f"{lost}: the beam's workspace at {found.largest:g} kPa {exists}"
     )
@@ -64,12 +58,27 @@ def advice(found: Prediction) -> str | None:
     return f"{box}, or wind every chamber (--law wound shows what that does)"
 
 
+def _snaps(found: Prediction) -> str:
+    """That some are reached only by a jump to another shape."""
+    snapped = [found.snap(row) for row in range(len(found.places))]
+    count = int(np.isfinite(snapped).sum())
+    return f" ({count} of them behind a snap at {np.nanmin(snapped):.3g} kPa)" if count else ""
+
+
+def _verb(found: Prediction, number: int) -> str:
+    """What a ray's section does where its stable part ends."""
+    result = found.result(number)
+    if result.status is Status.LIMIT_POINT:
+        return "balloons" if found.growth(number) >= BALLOON else "snaps"
+    return "creases" if result.creases else VERBS[result.status]
+
+
 def _place(result: RayResult) -> str:
-    """Where it creases."""
-    if not result.creases:
+    """Where it happens, where that is known."""
+    if np.isnan(result.mode_at).any():
         return ""
     x, y, z = result.mode_at
-    return f", near ({x:.1f}, {y:.1f}, {z:.1f}) mm"
+    return f", most of all near ({x:.1f}, {y:.1f}, {z:.1f}) mm"
 
 
 def _condition(found: Prediction) -> str:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
+import resource
+import subprocess
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,3 +53,26 @@ def report(name: str, measured: Iterable[Measured]) -> None:
 def save_growth(figure: Any, name: str) -> None:
     REPORTS.mkdir(parents=True, exist_ok=True)
     save_figure(figure, REPORTS / f"{name}.svg", REPORTS / f"{name}.png")
+
+
+def in_own_process(module: str, *arguments: str) -> dict[str, Any]:
+    """What `python -m module arguments` prints as its last line, an object in JSON."""
+    command = [sys.executable, "-m", module, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(command[1:])}: {done.stderr[-500:]}")
+    result: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return result
+
+
+def peak_memory() -> int:
+    """Largest memory of this process until now, its ru_maxrss [bytes].
+
+    Linux counts into ru_maxrss what the process was forked from; its own /proc entry does not.
+    """
+    status = Path("/proc/self/status")
+    if status.exists():
+        line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
+        return int(line.split()[1]) * 1024
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit

@@ -2,36 +2,40 @@
 
 All on the hand-made three-chamber section, on meshes of about as many unknowns, in a bent and
 stretched state, in turn. FElupe and scikit-fem work on the very hexahedra of `hex27` and in the
-law that ours is timed in there as well, neo-Hooke; what they assemble is held against ours. A
-degree of freedom is a component of a node; each time is that of forces and tangent together, of the
-plain form the tangent's alone. Ours fill the upper triangle, include the chambers' walls and reduce
-the tip to a plate; the others fill the whole matrix and have neither.
+law that ours is timed in there as well, neo-Hooke; what they assemble is held against ours. The
+mixed form of an incompressible law stands beside both nearly incompressible forms of FElupe, which
+are other energies: they are only timed.
+
+A degree of freedom is a component of a node, hydrostatic pressures and volume ratios not counted;
+each time is that of forces and tangent together, of the plain form the tangent's alone. Ours fill
+the upper triangle, include the chambers' walls and reduce the tip to a plate; the others fill the
+whole matrix and have neither.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from femcheck.material.law import Law
+from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection
-from femcheck.mesh.extrusion import extrude, stations
-from femcheck.solid.body import Body, discretise
+from femcheck.solid.body import Body
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.equilibrium import Equilibrium, actuator
-from femcheck.solid.state import State, placed
+from femcheck.solid.state import State
+from tests.bench import felupe_bodies
 from tests.bench.measured import Measured
-from tests.bench.neo_hooke import NeoHooke
-from tests.femcheck.ring_section import ring_section
+from tests.bench.solid_bodies import PARTS, bent, body_of, compressible, free_part
 
-LENGTH = 100.0
-PARTS = {"wedge18": 2, "tet10": 2, "hex27": 1}
-"""How finely the section's cells are cut: hexahedra have six times the nodes a triangle."""
+SAME, WEDGE = "hex27, neo-Hooke", "wedge18, rigid-section"
+MIXED = "hex27, neo-Hooke mixed"
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +54,21 @@ class Assembly:
 
 def assembly(dofs: int, repeats: int) -> Iterator[Measured]:
     """About `dofs` degrees of freedom each, the best of `repeats` rounds."""
-    law = NeoHooke()
+    law, incompressible = compressible(), NeoHookean(300.0, 0.5)
     bodies = {name: body_of(name, dofs) for name in PARTS}
     rigid = RigidSection(300.0, 2500.0)
     ours = [_ours(f"{name}, rigid-section", body, rigid) for name, body in bodies.items()]
     hexes = bodies["hex27"]
-    same = _ours("hex27, neo-Hooke", hexes, law)
-    felupe = _felupe(hexes, law)
+    same = _ours(SAME, hexes, law)
+    mixed = [
+        _ours(MIXED, hexes, incompressible),
+        _ours("wedge18, neo-Hooke mixed", bodies["wedge18"], incompressible),
+    ]
+    felupe, nearly = [], []
+    if felupe_bodies.installed():
+        felupe, nearly = [_felupe(hexes, law)], _felupe_nearly_incompressible(hexes, law)
     plain = _plain(hexes, law)
-    timed = [*ours, same, *([felupe] if felupe else [])]
+    timed = [*ours, same, *mixed, *felupe, *nearly]
     for one in timed:  # compiles, fills caches
         one.action()
     rounds = [[_seconds(one.action) for one in timed] for _ in range(repeats)]
@@ -71,50 +81,27 @@ def assembly(dofs: int, repeats: int) -> Iterator[Measured]:
     slow = time.perf_counter() - began
     yield from _rows(plain, slow, "tangent alone")
     speeds[plain.name] = plain.dofs / slow
-    yield Measured("felupe installed", float(felupe is not None), "")
     reference = same.matrix(None)
-    others = [(plain, assembled)]
-    if felupe is not None:
-        others.append((felupe, felupe.action()))
+    others = [(plain, assembled), *((other, other.action()) for other in felupe)]
     for other, result in others:
-        said = other.name.split(",")[0]
-        for name in (same.name, "hex27, rigid-section", "wedge18, rigid-section"):
-            ratio = speeds[name] / speeds[other.name]
-            yield Measured(f"assembly: {name}, against {said}", ratio, "times faster")
+        yield from _ratios(speeds, (SAME, "hex27, rigid-section", WEDGE), other.name)
         apart = abs(other.matrix(result) - reference).max() / abs(reference).max()
+        said = other.name.split(",")[0]
         yield Measured(f"assembly: tangent of {said} differs from ours by", apart, "of largest")
+    for other in nearly:
+        yield from _ratios(speeds, (MIXED,), other.name)
+    yield from _ratios(speeds, (SAME,), MIXED)
 
 
-def body_of(element: str, dofs: int) -> Body:
-    """The body with as many layers as bring it nearest to `dofs` = 3 × nodes."""
-    section = ring_section(PARTS[element])
-    one, two = (len(_body(section, element, layers).nodes) for layers in (1, 2))
-    return _body(section, element, max(round((dofs / 3 - one) / (two - one)), 0) + 1)
+def _ratios(speeds: dict[str, float], ours: Sequence[str], other: str) -> Iterator[Measured]:
+    for name in ours:
+        ratio = speeds[name] / speeds[other]
+        yield Measured(f"assembly: {name}, against {other}", ratio, "times faster")
 
 
-def _body(section: Any, element: str, layers: int) -> Body:
-    return discretise(extrude(section, stations(LENGTH, layers)), element)
-
-
-def bent(body: Body) -> State:
-    """A state like that of an inflated actuator: bent by 0.6 rad, stretched, a little creased."""
-    from femcheck.solid.plate import rotation
-
-    angle, stretch = 0.6, 1.05
-    s = body.nodes[:, 2] / LENGTH
-    theta, radius = angle * s, stretch * LENGTH / angle
-    x, y = body.nodes[:, 0] - body.tip_centre[0], body.nodes[:, 1]
-    arm = radius - x
-    at = np.stack([radius - arm * np.cos(theta), y, arm * np.sin(theta)], axis=1)
-    at[:, 0] += body.tip_centre[0]
-    at += 0.02 * np.sin(3 * body.nodes[:, [1, 2, 0]])
-    tip = np.array([radius * (1 - np.cos(angle)), 0, radius * np.sin(angle)]) + body.tip_centre
-    tip[2] -= LENGTH
-    return placed(body, at, tip, rotation(np.array([0, angle, 0])))
-
-
-def _ours(name: str, body: Body, law: Any) -> Assembly:
-    problem, state = actuator(body, law), bent(body)
+def _ours(name: str, body: Body, law: Law) -> Assembly:
+    problem = actuator(body, law)
+    state = replace(bent(body), hydrostatic=np.zeros(problem.hydrostatic_unknowns))
     pressures = np.array([100.0, 50.0, 0.0])
     if problem.forces(state, pressures).least_volume_ratio <= 0:
         raise ValueError(f"{name}: the state to assemble in has inverted elements")
@@ -130,32 +117,30 @@ def _ours(name: str, body: Body, law: Any) -> Assembly:
     return Assembly(name, 3 * len(body.nodes), action, matrix)
 
 
-def _felupe(body: Body, law: NeoHooke) -> Assembly | None:
-    """FElupe's SolidBody on the same hexahedra; None where it is not installed."""
-    try:
-        import felupe
-    except ImportError:
-        return None
-    from skfem import ElementHex2
+def _felupe(body: Body, law: NeoHookean) -> Assembly:
+    """FElupe's SolidBody on the same hexahedra."""
+    return _theirs("neo-Hooke", body, *felupe_bodies.solid(body, bent(body).x, law))
 
-    theirs = felupe.element.TriQuadraticHexahedron().points
-    ours = 2 * ElementHex2().doflocs - 1
-    order = [int(np.abs(ours - place).sum(axis=1).argmin()) for place in theirs]
-    mesh = felupe.Mesh(body.nodes, body.connectivity[:, order], "hexahedron27")
-    field = felupe.Field(felupe.RegionTriQuadraticHexahedron(mesh), dim=3)
-    field.values[:] = bent(body).x - body.nodes
-    whole = felupe.FieldContainer([field])
-    solid = felupe.SolidBody(felupe.NeoHookeCompressible(law.mu, law.lmbda), whole)
 
+def _felupe_nearly_incompressible(body: Body, law: NeoHookean) -> list[Assembly]:
+    """With three fields as FElupe chooses them for these hexahedra, and with cell-wise ones."""
+    x, mu = bent(body).x, law.shear_modulus
+    return [
+        _theirs("FieldsMixed (u, p, J)", body, *felupe_bodies.three_fields(body, x, mu)),
+        _theirs("SolidBodyNearlyIncompressible", body, *felupe_bodies.condensed(body, x, mu)),
+    ]
+
+
+def _theirs(what: str, body: Body, solid: Any, field: Any) -> Assembly:
     def action() -> Any:
-        solid.assemble.vector(whole)
-        return solid.assemble.matrix(whole)
+        solid.assemble.vector(field)
+        return solid.assemble.matrix(field)
 
-    name = f"FElupe {felupe.__version__} hex27, neo-Hooke"
-    return Assembly(name, 3 * len(body.nodes), action, partial(_free, body))
+    name = f"FElupe {felupe_bodies.version()} hex27, {what}"
+    return Assembly(name, 3 * len(body.nodes), action, partial(free_part, body))
 
 
-def _plain(body: Body, law: NeoHooke) -> Assembly:
+def _plain(body: Body, law: NeoHookean) -> Assembly:
     """`asm` of a form with the material's and the geometric tangent, as scikit-fem's examples do.
 
     The tangent A = ∂P/∂F is computed once at the quadrature points and not timed; forces neither.
@@ -180,7 +165,7 @@ def _plain(body: Body, law: NeoHooke) -> Assembly:
 
         whole = assembled.tocoo()
         entries = (whole.data, (at[whole.row], at[whole.col]))
-        return _free(body, coo_array(entries, shape=whole.shape).tocsr())
+        return free_part(body, coo_array(entries, shape=whole.shape).tocsr())
 
     dofs = 3 * len(body.nodes)
     return Assembly("scikit-fem form hex27, neo-Hooke", dofs, lambda: asm(form, basis), matrix)
@@ -203,14 +188,6 @@ def _moduli(problem: Equilibrium, state: State) -> FloatArray:
     for i in range(3):
         A[i, :, i] += S
     return np.ascontiguousarray(A)
-
-
-def _free(body: Body, matrix: Any) -> Any:
-    """Rows and columns of the nodes between both faces."""
-    held = np.union1d(body.base, body.tip)
-    free = np.setdiff1d(np.arange(len(body.nodes)), held)
-    kept = (3 * free[:, None] + np.arange(3)).ravel()
-    return matrix.tocsr()[kept][:, kept]
 
 
 def _rows(one: Assembly, seconds: float, timed: str = "forces and tangent") -> Iterator[Measured]:

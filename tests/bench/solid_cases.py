@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 
+from beamopt.arrays import FloatArray
 from beamopt.design import Actuator, Design, DrawnChamber, Grid
 from beamopt.seal import Seal
 from femcheck.continuation.direct import DirectSolver, direct_solver
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.shape import Shapes
+from femcheck.material.law import Law
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import extrude, stations
 from femcheck.mesh.geo import SectionSizes
@@ -16,13 +20,23 @@ from femcheck.mesh.gmsh_section import Mesher, MeshFailure
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.solid.body import discretise
 from femcheck.solid.equilibrium import Equilibrium, actuator
-from femcheck.solid.state import State, rest_state
+from femcheck.solid.state import State
 
-__all__ = ["LENGTH", "LOAD", "loaded", "problem_of", "section_of", "three_chambers"]
+__all__ = [
+    "LENGTH",
+    "LOAD",
+    "RIGID",
+    "iteration",
+    "loaded",
+    "problem_of",
+    "section_of",
+    "three_chambers",
+]
 
 LENGTH = 100.0
 LOAD = np.array([10.0, 5.0, 0.0])
 """[kPa] small enough for one walk of Newton's method from rest; its cost does not depend on it."""
+RIGID = RigidSection(300.0, 2500.0)
 
 
 def three_chambers() -> Design:
@@ -41,25 +55,39 @@ def three_chambers() -> Design:
     )
 
 
-def section_of(factor: float) -> SectionMesh:
-    """The three chambers' section with sizes multiplied by `factor`."""
-    section = Mesher().mesh(three_chambers().outline, SectionSizes(factor=factor))
+def section_of(factor: float, design: Design | None = None) -> SectionMesh:
+    """A design's section, or the three chambers', with sizes multiplied by `factor`."""
+    outline = (design or three_chambers()).outline
+    section = Mesher().mesh(outline, SectionSizes(factor=factor))
     if isinstance(section, MeshFailure):
         raise RuntimeError(str(section))
     return section
 
 
-def problem_of(section: SectionMesh, layers: int, penalty: float = 2500.0) -> Equilibrium:
-    """The actuator of 18-node wedges in the rigid-section law."""
-    body = discretise(extrude(section, stations(LENGTH, layers, 1.5)))
-    return actuator(body, RigidSection(300.0, penalty))
+def problem_of(section: SectionMesh, layers: int, law: Law = RIGID) -> Equilibrium:
+    """The actuator of 18-node wedges."""
+    return actuator(discretise(extrude(section, stations(LENGTH, layers, 1.5))), law)
 
 
 def loaded(problem: Equilibrium) -> tuple[State, DirectSolver]:
     """Its equilibrium at `LOAD`, and the solver that found it."""
     solver = direct_solver()
-    start = (rest_state(problem.body), np.zeros(3))
+    start = (problem.rest(), np.zeros(3))
     found = LoadSteps().walk(problem, Shapes(problem.body), start, LOAD, solver)
     if found.state is None:
         raise RuntimeError(found.status.value)
     return found.state, solver
+
+
+def iteration(
+    problem: Equilibrium, state: State, pressures: FloatArray, solver: DirectSolver
+) -> FloatArray:
+    """(3,) seconds of an iteration's assembly (forces and tangent), factor and solve."""
+    began = time.perf_counter()
+    forces = problem.forces(state, pressures)
+    tangent = problem.tangent(state, pressures, forces)
+    assembled = time.perf_counter()
+    solver.factor(tangent)
+    factored = time.perf_counter()
+    solver.solve(-forces.reduced)
+    return np.diff([began, assembled, factored, time.perf_counter()])

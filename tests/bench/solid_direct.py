@@ -7,8 +7,6 @@ Each solver works in a process of its own, so that its peak memory is its own:
 from __future__ import annotations
 
 import json
-import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,10 +18,11 @@ import numpy as np
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import direct_solver
 from femcheck.solid.equilibrium import Equilibrium
-from tests.bench.measured import Measured
+from tests.bench.measured import Measured, in_own_process, peak_memory
 from tests.bench.solid_cases import LOAD, loaded, problem_of
 from tests.femcheck.ring_section import ring_section
 
+MODULE = "tests.bench.solid_direct"
 SOLVERS = ("pardiso", "superlu")
 TIMES = ("analysis and factor", "factor again", "solve")
 
@@ -38,7 +37,7 @@ def direct_solvers(cases: tuple[tuple[int, int], ...], repeats: int) -> Iterator
             rounds: dict[str, list[dict[str, float]]] = {solver: [] for solver in SOLVERS}
             for _ in range(repeats):  # in turn
                 for solver in SOLVERS:
-                    rounds[solver].append(_in_own_process(solver, file))
+                    rounds[solver].append(in_own_process(MODULE, solver, str(file)))
         size = problem.body.unknowns
         best = {
             solver: {key: min(one[key] for one in each) for key in each[0]}
@@ -75,13 +74,6 @@ def _save(file: Path, problem: Equilibrium) -> None:
     )
 
 
-def _in_own_process(solver: str, file: Path) -> dict[str, float]:
-    command = [sys.executable, "-m", "tests.bench.solid_direct", solver, str(file)]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    result: dict[str, float] = json.loads(done.stdout)
-    return result
-
-
 def _measure(name: str, file: Path) -> dict[str, float]:
     with np.load(file) as kept:
         matrix = UpperMatrix(kept["starts"], kept["indices"], kept["data"])
@@ -90,7 +82,7 @@ def _measure(name: str, file: Path) -> dict[str, float]:
     solver = direct_solver(name)
     solver.factor(small)  # loads the library
     solver = direct_solver(name)
-    before = _peak()
+    before = peak_memory() / 1e6
     times = {}
     for key in TIMES[:2]:
         began = time.perf_counter()
@@ -99,22 +91,9 @@ def _measure(name: str, file: Path) -> dict[str, float]:
     began = time.perf_counter()
     solution = solver.solve(right)
     times["solve"] = time.perf_counter() - began
-    peak = _peak()
+    peak = peak_memory() / 1e6
     residual = np.abs(matrix.whole() @ solution - right).max() / np.abs(right).max()
     return times | {"memory": peak - before, "peak": peak, "residual": float(residual)}
-
-
-def _peak() -> float:
-    """Largest memory of this process until now [MB].
-
-    Linux counts into ru_maxrss what the process was forked from; its own /proc entry does not.
-    """
-    status = Path("/proc/self/status")
-    if status.exists():
-        line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
-        return int(line.split()[1]) * 1024 / 1e6
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
 
 
 if __name__ == "__main__":

@@ -1,19 +1,25 @@
-"""Seconds of one Newton iteration over layers, and over triangles of the section."""
+"""Seconds of one Newton iteration over layers, and over triangles of the section.
+
+In displacements alone (rigid-section law) and in the mixed form (incompressible neo-Hooke).
+"""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
+from femcheck.material.law import Law
+from femcheck.material.neo_hookean import NeoHookean
 from femcheck.mesh.section_mesh import SectionMesh
 from tests.bench.measured import Measured, save_growth
-from tests.bench.solid_cases import LOAD, loaded, problem_of, section_of
+from tests.bench.solid_cases import LOAD, RIGID, iteration, loaded, problem_of, section_of
 
 PARTS = ("assembly", "factor", "solve")
+FORMS: Mapping[str, Law] = {"rigid-section": RIGID, "mixed neo-Hooke": NeoHookean(300.0, 0.5)}
+MARKERS = ("o-", "s:")
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,37 +39,33 @@ def growth(
 ) -> Iterator[Measured]:
     """Over `layers` at the sizes fixed[1], and over `factors` of the sizes at fixed[0] layers."""
     section = section_of(fixed[1])
-    by_layers = [_cost(section, count, count, repeats) for count in layers]
     sections = [section_of(factor) for factor in factors]
-    by_triangles = [_cost(one, fixed[0], len(one.triangles), repeats) for one in sections]
     names = (f"layers, {len(section.triangles)} triangles", f"triangles, {fixed[0]} layers")
-    for name, costs in zip(names, (by_layers, by_triangles), strict=True):
+    tables: list[dict[str, list[Cost]]] = [{}, {}]
+    for form, law in FORMS.items():
+        tables[0][form] = [_cost(section, law, count, count, repeats) for count in layers]
+        tables[1][form] = [
+            _cost(one, law, fixed[0], len(one.triangles), repeats) for one in sections
+        ]
+    for name, table in zip(names, tables, strict=True):
         over, held = name.split(", ")
-        for cost in costs:
-            at = f"iteration, {cost.count} {over}, {held}"
-            yield Measured(f"{at}: unknowns", cost.unknowns, "")
-            for part, seconds in zip(PARTS, cost.seconds, strict=True):
-                yield Measured(f"{at}: {part}", seconds, "s")
-        for part, slope in zip(PARTS, _slopes(costs), strict=True):
-            yield Measured(f"iteration over {over}: power of {part}", slope, "")
-    save_growth(_figure(names, (by_layers, by_triangles)), "solid")
+        for form, costs in table.items():
+            for cost in costs:
+                at = f"iteration, {form}, {cost.count} {over}, {held}"
+                yield Measured(f"{at}: unknowns", cost.unknowns, "")
+                for part, seconds in zip(PARTS, cost.seconds, strict=True):
+                    yield Measured(f"{at}: {part}", seconds, "s")
+            for part, slope in zip(PARTS, _slopes(costs), strict=True):
+                yield Measured(f"iteration, {form}, over {over}: power of {part}", slope, "")
+    save_growth(_figure(names, tables), "solid")
 
 
-def _cost(section: SectionMesh, layers: int, count: int, repeats: int) -> Cost:
+def _cost(section: SectionMesh, law: Law, layers: int, count: int, repeats: int) -> Cost:
     """At an equilibrium, with its pattern analysed: the best of `repeats`, part by part."""
-    problem = problem_of(section, layers)
+    problem = problem_of(section, layers, law)
     state, solver = loaded(problem)
-    rounds = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        forces = problem.forces(state, LOAD)
-        tangent = problem.tangent(state, LOAD, forces)
-        assembled = time.perf_counter()
-        solver.factor(tangent)
-        factored = time.perf_counter()
-        solver.solve(-forces.reduced)
-        rounds.append(np.diff([began, assembled, factored, time.perf_counter()]))
-    return Cost(count, problem.body.unknowns, np.min(rounds, axis=0))
+    rounds = [iteration(problem, state, LOAD, solver) for _ in range(repeats)]
+    return Cost(count, problem.unknowns, np.min(rounds, axis=0))
 
 
 def _slopes(costs: Sequence[Cost]) -> np.ndarray:
@@ -73,16 +75,18 @@ def _slopes(costs: Sequence[Cost]) -> np.ndarray:
 
 
 @styled
-def _figure(names: Sequence[str], tables: Sequence[Sequence[Cost]]) -> object:
-    figure = new_figure(9.0, 3.8)
-    for axes, name, costs in zip(figure.subplots(1, 2, sharey=True), names, tables, strict=True):
-        counts = np.array([cost.count for cost in costs], dtype=float)
-        seconds = np.array([cost.seconds for cost in costs])
-        for k, (part, slope) in enumerate(zip(PARTS, _slopes(costs), strict=True)):
-            label = f"{part}: power {slope:.2f}"
-            axes.loglog(counts, seconds[:, k], "o-", color=SERIES_COLOURS[k], label=label)
-            middle = np.log(seconds[:, k]).mean() + slope * (np.log(counts) - np.log(counts).mean())
-            axes.loglog(counts, np.exp(middle), "--", color=ASIDE_COLOUR, lw=0.8)
+def _figure(names: Sequence[str], tables: Sequence[dict[str, list[Cost]]]) -> object:
+    figure = new_figure(9.0, 4.2)
+    for axes, name, table in zip(figure.subplots(1, 2, sharey=True), names, tables, strict=True):
+        for (form, costs), marker in zip(table.items(), MARKERS, strict=True):
+            counts = np.array([cost.count for cost in costs], dtype=float)
+            seconds = np.array([cost.seconds for cost in costs])
+            for k, (part, slope) in enumerate(zip(PARTS, _slopes(costs), strict=True)):
+                label = f"{form}, {part}: power {slope:.2f}"
+                axes.loglog(counts, seconds[:, k], marker, color=SERIES_COLOURS[k], label=label)
+                logs = np.log(seconds[:, k]).mean() - slope * np.log(counts).mean()
+                fit = np.exp(logs + slope * np.log(counts))
+                axes.loglog(counts, fit, "--", color=ASIDE_COLOUR, lw=0.8)
         over, held = name.split(", ")
         axes.set(xlabel=f"{over} ({held})")
         axes.set_xticks(counts, [f"{count:.0f}" for count in counts])

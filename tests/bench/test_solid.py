@@ -1,26 +1,22 @@
-"""What the solid's benchmark stands on: its law, its bent state, its sizes."""
+"""What the solid's benchmark stands on: its law, its bent state, its sizes, its comparison."""
 
 import numpy as np
+import pytest
 
-from femcheck.solid.equilibrium import Equilibrium, actuator
-from tests.bench.neo_hooke import NeoHooke
-from tests.bench.solid_assembly import bent, body_of
+from femcheck.solid.equilibrium import actuator
+from tests.bench.solid_bodies import bent, body_of, compressible
+from tests.bench.solid_felupe import AGREED, felupe_agreement
 
 
-def test_neo_hooke_is_the_derivative_of_its_energy() -> None:
-    law, h = NeoHooke(), 1e-6
-    F = np.eye(3) + 0.2 * np.random.default_rng(3).normal(size=(4, 3, 3))
-    C = np.einsum("nki,nkj->nij", F, F)[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]
-    stress, stiffness = np.empty_like(C), np.empty((len(C), 6, 6))
-    for k in range(6):
-        step = h * np.eye(6)[k]
-        # C12 stands twice in C, and by E = (C − 1)/2 a doubled shear 2 E12 is C12
-        factor = 2.0 if k < 3 else 1.0
-        stress[:, k] = factor * (law.energy(C + step) - law.energy(C - step)) / (2 * h)
-        stiffness[:, :, k] = factor * (law.stress(C + step) - law.stress(C - step)) / (2 * h)
-    np.testing.assert_allclose(law.stress(C), stress, atol=1e-5 * abs(stress).max())
-    np.testing.assert_allclose(law.stiffness(C), stiffness, atol=1e-5 * abs(stiffness).max())
-    assert abs(law.energy(np.array([[1.0, 1, 1, 0, 0, 0]]))) < 1e-12
+def test_compressible_law_has_the_lame_constants_asked_for_and_no_pressure_field() -> None:
+    law = compressible(100.0, 1000.0)
+    assert law.volumetric_compliance is None
+    np.testing.assert_allclose([law.shear_modulus, law.volumetric_modulus], [100, 1000], rtol=1e-12)
+    stretch = np.array([1.2, 0.9, 1.1])
+    C = np.append(stretch**2, np.zeros(3))[None]
+    log_J = np.log(stretch.prod())
+    energy = 50 * ((stretch**2).sum() - 3 - 2 * log_J) + 500 * log_J**2
+    np.testing.assert_allclose(law.energy(C), energy, rtol=1e-12)
 
 
 def test_bodies_have_the_size_asked_for_and_bend_without_inversion() -> None:
@@ -28,7 +24,17 @@ def test_bodies_have_the_size_asked_for_and_bend_without_inversion() -> None:
         body = body_of(element, 6000)
         assert 3 * len(body.nodes) < 12000
         state = bent(body)
-        forces = actuator(body, NeoHooke()).forces(state, np.zeros(3))
+        forces = actuator(body, compressible()).forces(state, np.zeros(3))
         assert forces.least_volume_ratio > 0.8
         # the plate is where the bent axis ends, and upright on it
         np.testing.assert_allclose(state.turn[:, 2], [np.sin(0.6), 0, np.cos(0.6)], atol=1e-12)
+
+
+def test_felupe_has_the_same_forces_and_tangents_at_our_equilibrium() -> None:
+    pytest.importorskip("felupe")
+    rows = list(felupe_agreement(6000))
+    differences = {row.what: row.value for row in rows if row.unit == "of largest"}
+    assert len(differences) == 6
+    assert all(value <= AGREED for value in differences.values()), differences
+    assert rows[-1].what == "felupe: agrees to 1e-8"
+    assert rows[-1].value == 1

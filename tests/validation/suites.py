@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.validation import arc, genotypes, published_solids, resume, solid, symmetry
+from tests.validation import arc, genotypes, material, published_solids, resume, solid, symmetry
 from tests.validation.check import Check
 
 __all__ = ["SUITES"]
@@ -15,5 +15,6 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "symmetry": symmetry.checks,
     "resume": resume.checks,
     "solid": solid.checks,
+    "material": material.checks,
     "published-solids": published_solids.checks,
 }

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 import femcheck.picture
+from beamopt.arrays import FloatArray
 from beamopt.workspace import node_index
-from femcheck.check.case import Case, solve_case
+from femcheck.check.case import Case, Solid, solve_case
 from femcheck.check.checked import Checked
+from femcheck.check.subject import Subject
 from femcheck.check.tables import verdict
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
@@ -28,6 +30,15 @@ DEMANDED = (
 def rows_of(file: Path) -> list[dict[str, str]]:
     with file.open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
+
+
+def scene_of(checked: Checked) -> tuple[Subject, Solid, FloatArray, FloatArray, str]:
+    """What is drawn of a check: its solid with the larger penalty at full pressure."""
+    stage = next(one for one in checked.stages if one.name == "standard-c10000")
+    state = checked.results[stage.name, (2, 0, 1)].outcome.state
+    assert state is not None
+    pressures = checked.subject.pressures[node_index(2, 0, 1)]
+    return checked.subject, stage.solid, state.x, pressures, "as the tests drew it"
 
 
 def test_it_holds(done: Done) -> None:
@@ -190,7 +201,7 @@ def test_the_picture(done: Done) -> None:
     import matplotlib.image
 
     checked, folder = done
-    assert femcheck.picture.draw(folder, checked)
+    assert femcheck.picture.draw(folder, *scene_of(checked))
     image = matplotlib.image.imread(folder / "picture.png")
     (folder / "picture.png").unlink()
     assert image.shape[:2] == (1000, 1800)
@@ -204,5 +215,5 @@ def test_a_picture_that_fails_is_only_a_log(
     done: Done, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(femcheck.picture.sys, "executable", "/bin/false")
-    assert not femcheck.picture.draw(tmp_path, done[0])
+    assert not femcheck.picture.draw(tmp_path, *scene_of(done[0]))
     assert [file.name for file in tmp_path.iterdir()] == ["picture.log"]

@@ -118,7 +118,7 @@ def test_killed_in_the_middle(quick: Done, tmp_path: Path) -> None:
     """A process killed once some cases are there, resumed in this one."""
     folder = tmp_path / "small"
     code = (
-        "import sys, femcheck.picture; femcheck.picture.draw = lambda f, c: False;"
+        "import sys, femcheck.picture; femcheck.picture.draw = lambda *scene: False;"
         "from pathlib import Path; from femcheck.check.run import check_design;"
         "from tests.femcheck.check.small import here, quick_options, small_subject;"
         "check_design(small_subject(), Path(sys.argv[1]), quick_options(), pool=here)"

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from femcheck.check import schedule as module
+from femcheck.check import work
 from femcheck.check.case import Case, CaseResult
-from femcheck.check.schedule import Key, Schedule, solve_all
-from femcheck.check.stage import Stage, layers_for
+from femcheck.check.meshes import layers_for
+from femcheck.check.schedule import Key, Schedule
+from femcheck.check.stage import Stage
+from femcheck.check.work import solve_all
 from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
@@ -78,7 +81,7 @@ def given(
     """What each case that is solved was given: its guess, and where it starts."""
     pool, seen = Later(seed), {}
     schedule = Schedule(stages(), LEVELS, 1.0, dict(known))
-    monkeypatch.setattr(module, "wait", pool.finish_one)
+    monkeypatch.setattr(work, "wait", pool.finish_one)
     make = schedule.case
 
     def case(key: Key) -> Case:

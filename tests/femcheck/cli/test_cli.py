@@ -20,7 +20,7 @@ CHEAP = ["--element", "tet4", "--layers", "2", "--size", "9", "--workers", "1"]
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(femcheck.picture, "draw", lambda folder, checked: False)
+    monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
     monkeypatch.setattr(femcheck.cli.run, "Subject", Coarse)
     design_of(three_circles()).save(tmp_path / "disc.json")
     touching = {"supply": 1, "center": [12, 0], "radius": 4}

@@ -1,0 +1,46 @@
+"""Predictions that many tests look at; the picture, which takes a process and seconds, is not."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import femcheck.picture
+import femcheck.prediction.run
+from femcheck.prediction.prediction import Prediction
+from tests.femcheck.prediction.small import predict, soft_subject
+
+Done = tuple[Prediction, Path]
+
+
+@pytest.fixture(scope="session")
+def pictured() -> list[tuple[Any, ...]]:
+    """What the picture of `limited` would have been drawn of."""
+    return []
+
+
+@pytest.fixture(scope="session")
+def limited(
+    tmp_path_factory: pytest.TempPathFactory, pictured: list[tuple[Any, ...]]
+) -> tuple[Prediction, Path]:
+    """A whole prediction in this process, with figures: every ray balloons. Eight seconds."""
+    folder = tmp_path_factory.mktemp("prediction") / "soft"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(femcheck.picture, "draw", lambda *scene: pictured.append(scene))
+        return predict(folder), folder
+
+
+@pytest.fixture(scope="session")
+def calm(tmp_path_factory: pytest.TempPathFactory) -> tuple[Prediction, Path]:
+    """The same at pressures that it stands, asked for no more than it gives. Four seconds."""
+    folder = tmp_path_factory.mktemp("prediction") / "soft"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.prediction.run, "save_figure", lambda *figure: None)
+        return predict(folder, soft_subject(levels=[0, 1, 2]), agree=1.0), folder
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
+    monkeypatch.setattr(femcheck.prediction.run, "save_figure", lambda *figure: None)
