@@ -3,6 +3,8 @@
     subject = femcheck.Subject("mine", beamopt.load_design("best.json"))
     checked = femcheck.check_design(subject, Path("checked"), femcheck.CheckOptions(), workers=2)
     print(checked.holds, checked.comparison.worst)
+    found = femcheck.predict_design(subject, Path("silicone"), femcheck.PredictionOptions())
+    print(femcheck.verdict(found), found.stable_box)
 
 Units are mm, kPa, and so mN and mN·mm.
 """
@@ -17,24 +19,38 @@ if TYPE_CHECKING:
     from femcheck.check.comparison import Comparison
     from femcheck.check.options import CheckOptions
     from femcheck.check.run import check_design
-    from femcheck.check.subject import Subject, sealed_copy
+    from femcheck.check.subject import Subject, sealed_copy, slender_copy
     from femcheck.continuation.outcome import Status
+    from femcheck.material.catalogue import law_by_name
+    from femcheck.material.fibre import Thread
     from femcheck.material.law import Law
     from femcheck.material.rigid_section import RigidSection
     from femcheck.mesh.geo import SectionSizes
     from femcheck.mesh.gmsh_section import Mesher, MeshFailure, MeshProblem
+    from femcheck.prediction.options import PredictionOptions
+    from femcheck.prediction.prediction import Prediction
+    from femcheck.prediction.run import predict_design
+    from femcheck.prediction.verdict import verdict
+    from femcheck.solid.winding import Wound
 
 _HOMES = {
     "femcheck.check.checked": ("Checked",),
     "femcheck.check.comparison": ("Comparison",),
     "femcheck.check.options": ("CheckOptions",),
     "femcheck.check.run": ("check_design",),
-    "femcheck.check.subject": ("Subject", "sealed_copy"),
+    "femcheck.check.subject": ("Subject", "sealed_copy", "slender_copy"),
     "femcheck.continuation.outcome": ("Status",),
+    "femcheck.material.catalogue": ("law_by_name",),
+    "femcheck.material.fibre": ("Thread",),
     "femcheck.material.law": ("Law",),
     "femcheck.material.rigid_section": ("RigidSection",),
     "femcheck.mesh.geo": ("SectionSizes",),
     "femcheck.mesh.gmsh_section": ("MeshFailure", "MeshProblem", "Mesher"),
+    "femcheck.prediction.options": ("PredictionOptions",),
+    "femcheck.prediction.prediction": ("Prediction",),
+    "femcheck.prediction.run": ("predict_design",),
+    "femcheck.prediction.verdict": ("verdict",),
+    "femcheck.solid.winding": ("Wound",),
 }
 
 __all__ = [
@@ -45,12 +61,20 @@ __all__ = [
     "MeshFailure",
     "MeshProblem",
     "Mesher",
+    "Prediction",
+    "PredictionOptions",
     "RigidSection",
     "SectionSizes",
     "Status",
     "Subject",
+    "Thread",
+    "Wound",
     "check_design",
+    "law_by_name",
+    "predict_design",
     "sealed_copy",
+    "slender_copy",
+    "verdict",
 ]
 
 

@@ -39,7 +39,7 @@ SECONDS = 900.0
 def checks(full: bool) -> list[Check]:
     if not full:
         return [
-            Check("linear response, coarse", partial(linear_rows, (0.3, 0.5), 4.0, 6, 0.03)),
+            Check("linear response, coarse", partial(linear_rows, (0.3, 0.5), 6.0, 8, 0.02)),
             Check("three chambers balloon, coarse", partial(limit_rows, 3)),
         ]
     return [
