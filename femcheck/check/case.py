@@ -161,7 +161,7 @@ def solve_case(case: Case) -> CaseResult:
     guess = None if case.guess is None else shop.shapes.state(case.guess)
     steps = LoadSteps(seconds=case.seconds)
     outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
-    if outcome.status in LOST:
+    if outcome.status in LOST and case.pressures.any():
         outcome = _followed(shop, case, outcome)
     if outcome.state is None:
         return CaseResult(outcome)

@@ -49,7 +49,7 @@ class CheckFolder:
         if there.exists():
             kept = read_json(there)
             for key, before, now in _differences(kept, json.loads(json_text(asked))):
-                said = f"the check to go on with; now asked for: {now}"
+                said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
                 raise InputError(there, key, before, said)
             design = path / "design.json"
             if design.exists() and design.read_text(encoding="utf-8") != subject.design.json():
@@ -96,7 +96,7 @@ class CheckFolder:
 def _differences(before: Any, now: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
     """Keys of nested tables whose values differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
-        for name in now:
+        for name in before | now:
             yield from _differences(before.get(name), now[name], f"{key}.{name}" if key else name)
     elif before != now:
         yield key, before, now

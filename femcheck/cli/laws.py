@@ -51,7 +51,8 @@ def laws_command() -> None:
 def _laws() -> list[Law]:
     """Every law, the materials in both forms."""
     materials = [law_by_name(name, E, nu) for name in MATERIALS for nu in (0.5, 0.4)]
-    return [RigidSection(E, PENALTY), *materials]
+    cubic = law_by_name("yeoh", E, constants={"C3_ratio": 0.1})  # none of the published ones has it
+    return [RigidSection(E, PENALTY), *materials, cubic]
 
 
 def _form(law: Law) -> str:

@@ -28,7 +28,7 @@ def report(checked: Checked, folder: Path) -> None:
     if checked.comparison is not None:
         console.print(_table(checked))
     console.print(f"  {'implementation':<16}{verdict(checked)}", soft_wrap=True, markup=False)
-    said = "not asked: rigid-section is no material; --law neo-hookean or wound asks"
+    said = "not asked; --law neo-hookean or --law wound predicts"
     console.print(f"  {'prediction':<16}{said}", soft_wrap=True, markup=False)
     console.print(f"  {'files':<16}{folder}/", soft_wrap=True, markup=False)
 

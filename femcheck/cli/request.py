@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,6 +83,8 @@ def options_of(request: RunRequest) -> CheckOptions | PredictionOptions:
     except InputError as error:
         if error.where:
             raise
+        if error.key in dict(_constant(text) for text in request.constants):
+            raise InputError("--constant", error.key, error.value, error.allowed) from None
         key = KEYS.get(error.key, error.key)
         raise InputError(f"--{key}", "", error.value, error.allowed) from None
 
@@ -126,9 +129,12 @@ def _wound(text: str) -> Wound:
 def _constant(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
-        return name.strip(), float(value)
+        number = float(value)
     except ValueError:
-        raise InputError("--constant", "", text, "NAME=NUMBER, as Jm=30") from None
+        number = math.nan
+    if not name.strip() or math.isnan(number):
+        raise InputError("--constant", "", text, "NAME=NUMBER, as Jm=30")
+    return name.strip(), number
 
 
 def _share(text: str) -> float:

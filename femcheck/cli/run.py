@@ -43,7 +43,7 @@ def run_command(request: RunRequest) -> None:
     folders = _folders(request, subjects)
     for subject, folder in zip(subjects, folders, strict=True):  # before any work
         if isinstance(options, PredictionOptions):
-            options.law_for(subject.design.actuator)
+            _check_material(options, subject)
         CheckFolder.open(folder, subject, options.question, resume=request.resume)
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
     console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
@@ -59,6 +59,13 @@ def run_command(request: RunRequest) -> None:
             everything_holds = everything_holds and found.holds
     if not everything_holds:
         raise typer.Exit(1)
+
+
+def _check_material(options: PredictionOptions, subject: Subject) -> None:
+    try:
+        options.law_for(subject.design.actuator)
+    except InputError as error:
+        raise InputError(subject.name, error.key, error.value, error.allowed) from None
 
 
 def _followed(
@@ -115,16 +122,15 @@ def _name(path: Path, design: Design) -> str:
 def _subject(
     file: Path, name: str, design: Design, skin: float | None, slenderness: float | None
 ) -> Subject:
-    """As it is to be checked: sealed, and of the length that is asked for."""
-    subject = _sealed(file, name, design, skin)
-    if slenderness is None:
-        return subject
-    try:
-        return slender_copy(subject, slenderness)
-    except ValueError:
-        diameter = 2 * design.grid.outer_radius
-        said = f"H/D with H = 5…5000 mm, D = {diameter:g} mm"
-        raise InputError("--slenderness", "", slenderness, said) from None
+    """As it is to be checked: of the length that is asked for, and sealed."""
+    if slenderness is not None:
+        try:
+            design = slender_copy(Subject(name, design), slenderness).design
+        except ValueError:
+            diameter = 2 * design.grid.outer_radius
+            said = f"H/D with H = 5…5000 mm, D = {diameter:g} mm"
+            raise InputError("--slenderness", "", slenderness, said) from None
+    return _sealed(file, name, design, skin)
 
 
 def _sealed(file: Path, name: str, design: Design, skin: float | None) -> Subject:

@@ -33,10 +33,11 @@ class Mode:
 def unstable_mode(
     problem: Equilibrium, state: State, pressures: FloatArray, solver: DirectSolver
 ) -> Mode | None:
-    """The motion along which the potential falls most, per square of it; None if none is found.
+    """The motion whose stiffness has just become negative; None if none is found.
 
     Lanczos on the compliance (the inverse of the tangent, seen from the unknowns that move nodes),
-    whose negative eigenvalues are the unstable motions whatever else the tangent has.
+    whose negative eigenvalues are the unstable motions whatever else the tangent has; the most
+    negative one is the softest of them.
     """
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 

@@ -10,7 +10,7 @@ from femcheck.continuation.mode import Mode
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.solid.state import State
 
-__all__ = ["Path", "PathPoint", "highest_load", "is_limit", "is_past"]
+__all__ = ["Path", "PathPoint", "is_limit", "is_past", "summit"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +40,7 @@ class Path:
     points : all equilibria, in order, from rest.
     stops : the stable equilibria at the loads asked for; None where there is none.
     last : the stable equilibrium with the largest load; None where there is none at all.
+    growth : volume over that at rest where the stable part ends; NaN where it does not.
     snaps : loads of limit points behind which the path became stable again at a higher load: the
         body jumps from one stable shape to another there.
     mode : the motion by which stability is lost; None where it is not, or is not known.
@@ -50,6 +51,7 @@ class Path:
     points: tuple[PathPoint, ...]
     stops: tuple[PathPoint | None, ...]
     last: PathPoint | None
+    growth: float = float("nan")
     snaps: tuple[float, ...] = ()
     mode: Mode | None = None
     statistics: Statistics = field(default_factory=Statistics)
@@ -65,8 +67,8 @@ def is_past(point: PathPoint) -> bool:
     return point.growth < 0 or (point.unstable is not None and point.unstable > 0)
 
 
-def highest_load(here: PathPoint, there: PathPoint) -> float:
-    """Largest load of the cubic in the volume through two points with their slopes."""
+def summit(here: PathPoint, there: PathPoint) -> tuple[float, float]:
+    """Largest load, and the volume there, of the cubic in the volume through two points."""
     width = there.volume - here.volume
     slopes = np.array([width / here.growth, width / there.growth])
     rise = there.load - here.load
@@ -75,5 +77,7 @@ def highest_load(here: PathPoint, there: PathPoint) -> float:
     )
     at = np.roots(np.polyder(cubic))
     inside = at.real[(abs(at.imag) < 1e-9) & (at.real >= 0) & (at.real <= 1)]
-    ends = max(here.load, there.load)
-    return float(max([ends, *np.polyval(cubic, inside)]))
+    places = np.concatenate([[0.0, 1.0], inside])
+    loads = np.polyval(cubic, places)
+    best = int(np.argmax(loads))
+    return float(loads[best]), float(here.volume + places[best] * width)

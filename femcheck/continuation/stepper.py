@@ -139,12 +139,23 @@ class Stepper:
             return Failed(Status.LINEAR_SOLVER, None, guess, load), None, length
         return point, there, length
 
+    def at(self, load: float, near: PathPoint) -> PathPoint | None:
+        """The equilibrium at a load near a point; None where it is not found."""
+        control = ArcControl(self._direction, near.load, Mix(0.0, 1.0), load)
+        newton, deadline = self._newton, self._deadline
+        outcome = newton.follow(self._problem, near.state, control, self._solver, deadline)
+        self.spent.add(outcome.statistics)
+        if outcome.state is None:
+            return None
+        return self._measured(outcome.state, load, outcome.negative_eigenvalues)[0]
+
     def _to_stop(self, here: PathPoint, slope: Slope) -> tuple[float, float]:
         """Length to the next load asked for, and that load; infinite where there is none."""
         ahead = [stop for stop in self._stops if stop > here.load * (1 + 1e-9)]
-        if not ahead or is_past(here):
+        rise = self.rise(slope, 1.0)
+        if not ahead or is_past(here) or rise <= 0:
             return float("inf"), float("nan")
-        return (ahead[0] - here.load) / self.rise(slope, 1.0), ahead[0]
+        return (ahead[0] - here.load) / rise, ahead[0]
 
     def _measured(
         self, state: State, load: float, unstable: int | None, before: Slope | None = None

@@ -11,12 +11,14 @@ from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.mode import unstable_mode
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Status
-from femcheck.continuation.path import Path, PathPoint, highest_load, is_limit, is_past
+from femcheck.continuation.path import Path, PathPoint, is_limit, is_past, summit
 from femcheck.continuation.stepper import Failed, Leg, Predictor, Stepper
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State
 
 __all__ = ["PathSteps"]
+
+FLAT = 0.05  # load by length of a path, scaled, below which a limit point may be near
 
 End = tuple[Status, float]
 """What ended the stable part of a path, and at which load [kPa]."""
@@ -81,6 +83,7 @@ class PathSteps:
             stops=tuple(trace.found),
             last=max(stable, key=lambda point: point.load) if stable else None,
             snaps=tuple(trace.snaps),
+            growth=trace.grown(trace.volume),
             mode=mode,
             statistics=stepper.spent,
         )
@@ -91,6 +94,7 @@ class _Trace:
 
     points : so far. found : stable equilibria at the stops. snaps : limit points behind which it
     became stable again at a higher load. lost : state and load close behind where stability ended.
+    volume : where it did.
     """
 
     def __init__(
@@ -102,6 +106,7 @@ class _Trace:
         self.found: list[PathPoint | None] = [None] * len(stops)
         self.snaps: list[float] = []
         self.lost: tuple[State, float] | None = None
+        self.volume = float("nan")
         self._ended_at = 0.0
 
     def follow(self) -> End:
@@ -116,16 +121,14 @@ class _Trace:
         halved = False
         tries = self._steps.tries
         while len(self.points) < self._steps.most_points and not self._has_all():
-            if ended is not None and self._beyond is None:
-                tries -= 1
-                if tries < 0:
-                    return ended
             tried, slope_there, length = self._stepper.step(leg, length)
             if isinstance(tried, Failed):
                 if ended is None and self._is_lost(leg, tried, length):
-                    return Status.BUCKLED, (leg.here.load + tried.load) / 2
+                    return Status.BUCKLED, leg.here.load
                 length, halved = length / 2, True
-                if tried.status is Status.TIME_OUT or length < self._steps.smallest:
+                tries -= ended is not None
+                too_small = length < self._steps.smallest or tries < 0
+                if tried.status is Status.TIME_OUT or too_small:
                     return ended or (tried.status, leg.here.load)
                 continue
             if ended is None and is_past(tried):
@@ -133,7 +136,8 @@ class _Trace:
                 self._ended_at = leg.here.volume
             elif ended is not None and self._has_snapped(ended, tried):
                 self.snaps.append(ended[1])
-                ended = None
+                self._catch_up(tried)
+                ended, self.lost, tries = None, None, self._steps.tries
             self._take(tried, ended)
             if ended is not None and self._is_far(ended, tried):
                 return ended
@@ -142,8 +146,10 @@ class _Trace:
             longer = self._stepper.iterations <= self._steps.brisk and not halved
             length = min(length * (2.0 if longer else 1.0), self._steps.longest)
             halved = False
-        if self._has_all():
+        if all(point is not None for point in self.found):
             return Status.CONVERGED, float("nan")
+        if self._has_all():
+            return Status.STEP_TOO_SMALL, self.snaps[-1]
         return ended or (Status.STEP_TOO_SMALL, self.points[-1].load)
 
     def _take(self, point: PathPoint, ended: End | None) -> None:
@@ -154,6 +160,14 @@ class _Trace:
             if self.found[place] is None and abs(point.load - stop) <= 1e-9 * max(stop, 1.0):
                 self.found[place] = point
 
+    def _catch_up(self, point: PathPoint) -> None:
+        """Solve at the stops that a snap has jumped over."""
+        for place, stop in enumerate(self._stops):
+            if self.found[place] is None and stop <= point.load:
+                solved = self._stepper.at(stop, point)
+                if solved is not None and not is_past(solved):
+                    self.found[place] = solved
+
     def _has_all(self) -> bool:
         return self.found[-1] is not None
 
@@ -161,11 +175,16 @@ class _Trace:
         status, critical = ended
         return status is Status.LIMIT_POINT and not is_past(point) and point.load > critical
 
+    def grown(self, volume: float) -> float:
+        """Volume over that at rest; what chambers lose under suction counts as grown."""
+        if not self.points:
+            return float("nan")
+        return 1 + (volume - self.points[0].volume) / float(self._stepper.scale[0])
+
     def _is_far(self, ended: End, point: PathPoint) -> bool:
         """Whether a path past its stable part has been followed far enough."""
-        grown = 1 + (point.volume - self.points[0].volume) / float(self._stepper.scale[0])
         if self._beyond is not None:
-            return grown >= self._beyond
+            return self.grown(point.volume) >= self._beyond
         since = (point.volume - self._ended_at) / float(self._stepper.scale[0])
         return ended[0] is not Status.LIMIT_POINT or since >= self._steps.patience
 
@@ -175,8 +194,13 @@ class _Trace:
         Close to a bifurcation the tangent is nearly singular and iterations diverge; that they
         began on the other side of it tells it from other failures.
         """
+        if failed.status is Status.TIME_OUT or failed.unstable is None or failed.unstable < 1:
+            return False
         rise = self._stepper.rise(leg.slope, length)
-        if not (failed.unstable and 0 < rise <= self._steps.narrow * leg.here.load):
+        is_short = length <= self._steps.first and 0 < rise <= self._steps.narrow * leg.here.load
+        # where the load hardly rises, one direction is lost at a limit point too: halve on
+        is_flat = failed.unstable == 1 and leg.slope.plane[1] < FLAT
+        if not is_short or (is_flat and length / 2 >= self._steps.smallest):
             return False
         self.lost = failed.state, failed.load
         return True
@@ -199,11 +223,13 @@ class _Trace:
                 stable, low = tried, middle
             top = _top(stable, lost)
         self.lost = lost.state, lost.load
-        if is_limit(lost):
-            return Status.LIMIT_POINT, top
-        return Status.BUCKLED, (stable.load + top) / 2
+        if not is_limit(lost):
+            self.volume = stable.volume
+            return Status.BUCKLED, stable.load
+        self.volume = summit(stable, lost)[1]
+        return Status.LIMIT_POINT, top
 
 
 def _top(stable: PathPoint, lost: PathPoint) -> float:
     """Largest load between two points; past a limit point that of the second is less."""
-    return highest_load(stable, lost) if lost.growth < 0 else lost.load
+    return summit(stable, lost)[0] if lost.growth < 0 else lost.load

@@ -21,7 +21,7 @@ from femcheck.material.yeoh import Yeoh
 
 __all__ = ["LAWS", "MATERIALS", "Constant", "Material", "constants_of", "law_by_name"]
 
-DESIGN, GIVEN = "the design", "given"
+DESIGN, GIVEN, FOLLOWS = "the design", "given", "of E and ν"
 
 GENT = (
     "Gent, Rubber Chem. Technol. 69 (1996) 59: vulcanised rubber in simple extension, "
@@ -129,13 +129,13 @@ def constants_of(law: Law) -> tuple[Constant, ...]:
         raise TypeError(f"{law.name} is not in the catalogue")
     moduli = [
         Constant("E", law.youngs_modulus, "kPa", DESIGN),
-        Constant("ν", law.poisson_ratio, "", DESIGN),
-        Constant("μ", law.shear_modulus, "kPa", DESIGN),
+        Constant("ν", law.poisson_ratio, "", GIVEN),
+        Constant("μ", law.shear_modulus, "kPa", FOLLOWS),
     ]
     if law.poisson_ratio < 0.5:
-        moduli.append(Constant("λ", law.lame_modulus, "kPa", DESIGN))
+        moduli.append(Constant("λ", law.lame_modulus, "kPa", FOLLOWS))
         if law.volumetric_modulus != law.lame_modulus:
-            moduli.append(Constant("Λ", law.volumetric_modulus, "kPa", DESIGN))
+            moduli.append(Constant("Λ", law.volumetric_modulus, "kPa", FOLLOWS))
     return (*moduli, *(_used(law, published) for published in LAWS[law.name].shape))
 
 

@@ -100,7 +100,7 @@ def axis_figure(found: Prediction) -> Figure:
         for axes, value in ((bending, 1e3 * np.hypot(*beam[1:])), (stretching, 100 * beam[0])):
             axes.plot([0, length], [value, value], dashes, color=colour, lw=0.7, alpha=0.6)
     bending.set_ylabel("curvature, the beam's way [1/m]")
-    stretching.set(ylabel="stretch [%]", xlabel="along the actuator at rest [mm]")
+    stretching.set(ylabel="extension [%]", xlabel="along the actuator at rest [mm]")
     diameter = 2 * found.subject.design.grid.outer_radius
     for axes in (bending, stretching):
         axes.grid(True)

@@ -33,6 +33,7 @@ def write_ray(path: Path, result: RayResult, digest: str) -> None:
         "status": np.array(result.status.name),
         "critical": np.array(result.critical),
         "track": result.track,
+        "growth": np.array(result.growth),
         "snaps": np.array(result.snaps),
         "mode_at": result.mode_at,
         "mode_share": np.array(result.mode_share),
@@ -40,7 +41,7 @@ def write_ray(path: Path, result: RayResult, digest: str) -> None:
         "seconds": np.array(
             [spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds]
         ),
-        "stops": np.array([answer is not None for answer in result.answers]),
+        "there": np.array([one is not None for one in (*result.answers, result.last)]),
     }
     for number, answer in enumerate((*result.answers, result.last)):
         if answer is not None:
@@ -58,9 +59,9 @@ def read_ray(path: Path, digest: str) -> RayResult | None:
             if str(kept["digest"]) != digest:
                 return None
             steps, iterations = kept["counts"].tolist()
-            stops = kept["stops"].tolist()
-            *answers, last = (_answer(kept, number) for number in range(len(stops) + 1))
-            if [answer is not None for answer in answers] != stops:
+            there = kept["there"].tolist()
+            *answers, last = (_answer(kept, number) for number in range(len(there)))
+            if [one is not None for one in (*answers, last)] != there:
                 return None
             return RayResult(
                 Status[str(kept["status"])],
@@ -68,6 +69,7 @@ def read_ray(path: Path, digest: str) -> RayResult | None:
                 tuple(answers),
                 last,
                 kept["track"],
+                float(kept["growth"]),
                 tuple(kept["snaps"].tolist()),
                 kept["mode_at"],
                 float(kept["mode_share"]),

@@ -53,6 +53,9 @@ class PredictionOptions(SolidOptions):
     def law_for(self, actuator: Actuator) -> Law:
         """The law of an actuator's material.
 
+        A shear modulus of E/3, which designs have by default, goes with every ν: it says no more
+        than that nothing else was asked for.
+
         Raises
         ------
         InputError : a shear modulus that contradicts E and ν.

@@ -26,6 +26,8 @@ __all__ = ["Prediction"]
 
 SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
 STILL = 1e-9  # mm
+PHYSICAL = {Status.LIMIT_POINT, Status.BUCKLED}
+"""Ends that the actuator has; the others are the computation's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,22 +79,28 @@ class Prediction:
             return Status.CONVERGED
         return self.results[mesh, place[0]].status
 
-    def ended_at(self, row: int) -> float:
+    def ended_at(self, row: int, mesh: str = "standard") -> float:
         """Load at which a combination's ray lost its stability before it [kPa]; NaN if not."""
         place = self.places[row]
-        if place is None or self.answer(row) is not None:
+        if place is None or self.answer(row, mesh) is not None:
             return float("nan")
-        return self.result(place[0]).critical
+        return self.results[mesh, place[0]].critical
 
-    def snap(self, row: int) -> float:
+    def snap(self, row: int, mesh: str = "standard") -> float:
         """Load at which a combination's ray jumps to another shape on its way [kPa]; NaN: never."""
         place = self.places[row]
-        snaps = () if place is None else self.result(place[0]).snaps
+        snaps = () if place is None else self.results[mesh, place[0]].snaps
         return snaps[0] if place is not None and snaps and snaps[0] < place[1] else float("nan")
 
     def growth(self, number: int) -> float:
-        """Volume of a ray's chambers at its last stable equilibrium over that at rest."""
-        last, weights = self.result(number).last, np.abs(np.array(self.rays[number].direction))
+        """Growth of a ray's chambers where its stable part ends, or at its last stop; NaN: none.
+
+        Volume over that at rest.
+        """
+        result = self.result(number)
+        if not np.isnan(result.growth):
+            return result.growth
+        last, weights = result.last, np.abs(np.array(self.rays[number].direction))
         rest = self.solids["standard"].section.moments.chamber_areas @ weights
         rest = rest * self.subject.design.actuator.length
         return float(last.volumes @ weights / rest) if last is not None and rest > 0 else np.nan
@@ -163,17 +171,37 @@ class Prediction:
     @property
     def first_to_end(self) -> int | None:
         """The ray whose stable part ends at the lowest load; None where none ends."""
-        ended = [n for n in range(len(self.rays)) if not np.isnan(self.result(n).critical)]
-        return min(ended, key=lambda n: (self.result(n).critical, n)) if ended else None
+        return self._first(PHYSICAL)
+
+    @property
+    def first_to_fail(self) -> int | None:
+        """The ray that the computation lost at the lowest load; None where it lost none."""
+        return self._first(set(Status) - PHYSICAL - {Status.CONVERGED})
+
+    def _first(self, statuses: set[Status]) -> int | None:
+        found = [n for n in range(len(self.rays)) if self.result(n).status in statuses]
+        return min(found, key=lambda n: (self.result(n).critical, n)) if found else None
+
+    @property
+    def not_computed(self) -> int:
+        """Combinations without an answer because the computation lost their rays."""
+        lost = PHYSICAL | {Status.CONVERGED}
+        return sum(self.status(row) not in lost for row in range(len(self.places)))
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether unstable directions were counted at every equilibrium."""
+        return all((result.track[:, -1] >= 0).all() for result in self.results.values())
 
     @property
     def stable_box(self) -> float:
         """P [kPa] so that combinations up to P in every supply have a stable answer.
 
-        As far as the rays tell: the combinations, scaled down, lie on the same ones.
+        As far as the rays tell: the combinations, scaled down, lie on the same ones. Where the
+        computation lost a ray it is what is known, and may be more.
         """
-        first = self.first_to_end
-        return self.largest if first is None else self.result(first).critical
+        ends = [n for n in (self.first_to_end, self.first_to_fail) if n is not None]
+        return min((self.result(n).critical for n in ends), default=self.largest)
 
     @property
     def holds(self) -> bool:

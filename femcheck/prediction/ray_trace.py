@@ -19,7 +19,8 @@ from femcheck.solid.equilibrium import Equilibrium
 __all__ = ["RayResult", "RayTask", "stopped_ray", "trace_ray"]
 
 TRACK = ("load", "volume_1", "volume_2", "volume_3", "x", "y", "z", "unstable")
-"""Columns of a track: P [kPa], volumes [mm³], tip [mm], unstable directions (−1: not known)."""
+"""Columns of a track: P [kPa], volumes [mm³], tip from the base's material centroid [mm], unstable
+directions (−1: not known)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,7 @@ class RayResult:
     answers : at the stops; None where there is none.
     last : the last stable equilibrium; None where not even rest could be computed.
     track : (n, 8) all equilibria, see `TRACK`.
+    growth : volume of the chambers that are loaded over that at rest where the stable part ends.
     snaps : loads at which it jumped to another stable shape [kPa].
     mode_at : (3,) where stability is lost, undeformed [mm]. mode_share : of the nodes that take
         part. NaN where it is not lost, or where that is not known.
@@ -53,15 +55,16 @@ class RayResult:
     answers: tuple[Answer | None, ...]
     last: Answer | None
     track: FloatArray
+    growth: float = float("nan")
     snaps: tuple[float, ...] = ()
     mode_at: FloatArray = field(default_factory=lambda: np.full(3, np.nan))
     mode_share: float = float("nan")
     statistics: Statistics = field(default_factory=Statistics)
 
     @property
-    def creases(self) -> bool:
-        """Whether what buckles is a small part of a surface, and not the actuator."""
-        return self.status is Status.BUCKLED and self.mode_share < LOCAL
+    def is_local(self) -> bool:
+        """Whether stability is lost by a small part of the section, and not by the actuator."""
+        return self.mode_share < LOCAL
 
 
 def trace_ray(task: RayTask) -> RayResult:
@@ -75,12 +78,14 @@ def trace_ray(task: RayTask) -> RayResult:
         for point in path.stops
     )
     last = read_off(shop.problem, shop.shapes, path.last) if path.last else None
+    base = np.append(task.solid.section.moments.centroid, 0.0)
     found = RayResult(
         path.status,
         path.critical,
         answers,
         last,
-        _track(shop.problem, path),
+        _track(shop.problem, base, path),
+        growth=path.growth,
         snaps=path.snaps,
         statistics=path.statistics,
     )
@@ -89,12 +94,12 @@ def trace_ray(task: RayTask) -> RayResult:
     return replace(found, mode_at=path.mode.place, mode_share=path.mode.share)
 
 
-def _track(problem: Equilibrium, path: Path) -> FloatArray:
+def _track(problem: Equilibrium, base: FloatArray, path: Path) -> FloatArray:
     rows = [
         [
             point.load,
             *problem.volumes(point.state),
-            *point.state.tip,
+            *(point.state.tip - base),
             -1 if point.unstable is None else point.unstable,
         ]
         for point in path.points

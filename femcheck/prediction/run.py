@@ -112,7 +112,7 @@ def _digest(solid: Solid, work: RayWork, key: RayKey) -> str:
 
 
 def _write(folder: CheckFolder, found: Prediction) -> None:
-    """Tables, meshes, figures, and the picture of the most loaded stable equilibrium."""
+    """Tables, meshes, figures, and a picture of the last stable shape of what ends first."""
     folder.write(tables_of(found))
     if not found.has_answers or not found.rays:
         folder.without_answer()
@@ -126,7 +126,8 @@ def _write(folder: CheckFolder, found: Prediction) -> None:
     lasts = {n: found.result(n).last for n in range(len(found.rays))}
     states = {f"last-{found.rays[n].name}": last.x for n, last in lasts.items() if last}
     folder.write_meshes(found.solids["standard"], states)
-    shown = found.first_to_end or 0
+    ended = found.first_to_end
+    shown = 0 if ended is None else ended
     last = lasts[shown]
     if last is not None and last.load > 0:
         ray, result = found.rays[shown], found.result(shown)

@@ -19,12 +19,16 @@ from femcheck.prediction.verdict import advice, verdict
 
 __all__ = ["tables_of"]
 
-MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_x,stretch_y,stretch_z"
+MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z"
 LIMITS = (
     "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
-    "volume_ratio_3,largest_stretch,stretch_x,stretch_y,stretch_z,mode_x,mode_y,mode_z,mode_share,points,iterations"
+    "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
+    "mode_at_z,mode_share,points,iterations"
 )
-AXIS = "d1,d2,d3,load_kpa,z,stretch,curvature_x,curvature_y,beam_stretch,beam_x,beam_y"
+AXIS = (
+    "d1,d2,d3,load_kpa,z,extension,curvature_x,curvature_y,"
+    "beam_extension,beam_curvature_x,beam_curvature_y"
+)
 
 
 def tables_of(found: Prediction) -> dict[str, str | None]:
@@ -54,8 +58,6 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
             if place is not None and (mesh, place[0]) not in found.results:
                 continue
             answer = found.answer(row, mesh)
-            ended = answer is None and place is not None
-            critical = found.results[mesh, place[0]].critical if ended and place else math.nan
             yield (
                 found.options.law,
                 None,
@@ -68,7 +70,7 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(_ratios(found, mesh, answer)),
                 found.status(row, mesh).value,
-                *cells([critical, found.snap(row)]),
+                *cells([found.ended_at(row, mesh), found.snap(row, mesh)]),
                 *_stretched(answer),
             )
 
@@ -117,14 +119,14 @@ def _axis(found: Prediction) -> Iterator[tuple[object, ...]]:
         if last is None:
             continue
         pressures = last.load * np.array(ray.direction)
-        beam = cells_of_strains(found.subject.response.strains(pressures[None])[0])
+        beam = _strain_cells(found.subject.response.strains(pressures[None])[0])
         for z, *strains in last.axis.tolist():
             head = (*map(plain, ray.direction), *cells([last.load, z]))
-            yield *head, *cells_of_strains(np.array(strains)), *beam
+            yield *head, *_strain_cells(np.array(strains)), *beam
 
 
-def cells_of_strains(strains: FloatArray) -> list[object]:
-    """Rounded as shares and 1/mm are: curvatures have small numbers."""
+def _strain_cells(strains: FloatArray) -> list[object]:
+    """Rounded further than millimetres: curvatures [1/mm] are small numbers."""
     return [round(float(value), 3 + DIGITS) + 0.0 for value in strains]
 
 
@@ -160,9 +162,18 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "faults": [str(fault) for fault in outline.faults],
         },
     }
+    moved = found.subject.sealing_moved
+    if moved is not None:
+        data["sealing_moved_mm"] = {
+            "worst": _most(moved),
+            "median": _number(float(np.median(moved))),
+        }
     if found.has_answers:
         data["stable_box_kpa"] = round(found.stable_box, DIGITS)
         data["limits"] = [_limit(found, number) for number in _principal(found)]
+        data["growth_at_the_end"] = {
+            found.rays[number].text: _number(found.growth(number)) for number in _principal(found)
+        }
         data["difference"] = {
             "cases": int(found.is_loaded.sum()),
             "without_answer": found.unanswered,
@@ -207,7 +218,6 @@ def _most(values: FloatArray) -> float | None:
 def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
     solid = found.solids[mesh]
     results = [result for key, result in found.results.items() if key[0] == mesh]
-    counted = all((result.track[:, -1] >= 0).all() for result in results)
     return {
         "mesh": mesh,
         "element": solid.element,
@@ -217,7 +227,7 @@ def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
         "unknowns": solid.body().unknowns,
         "rays": len(results),
         "iterations": sum(result.statistics.iterations for result in results),
-        "stability": "checked by inertia" if counted else "not checked",
+        "stability": "checked by inertia" if found.is_checked else "not checked",
     }
 
 

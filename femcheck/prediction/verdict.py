@@ -12,50 +12,83 @@ from femcheck.solid.winding import Wound
 __all__ = ["advice", "verdict"]
 
 BALLOON = 1.5  # growth of the chambers at a limit point above which it is no wall that snaps
-VERBS = {
-    Status.BUCKLED: "buckles",
-    Status.INVERTED: "is lost to the computation (an element turned inside out)",
-    Status.STEP_TOO_SMALL: "is lost to the computation (steps became too small)",
-    Status.LINEAR_SOLVER: "is lost to the computation (no solution of a linear system)",
-    Status.TIME_OUT: "is not followed further (time limit)",
-    Status.STOPPED: "is not followed (its process ended)",
-}
 
 
 def verdict(found: Prediction) -> str:
     """What happens, and whether the beam's workspace exists."""
     if found.failure is not None:
         return f"no answer: {found.failure}"
-    loaded = int(found.is_loaded.sum())
-    if loaded == 0:
+    if not found.is_loaded.any():
         return "nothing to predict: no combination has pressure"
+    said = _answered(found) if found.unanswered == 0 else _unanswered(found)
+    unchecked = "" if found.is_checked else "; stability not checked: the solver can not count"
+    return f"{_condition(found)}, {said}{unchecked}"
+
+
+def _answered(found: Prediction) -> str:
+    """Every combination has an answer: how far the beam is off."""
+    agree = f"{100 * found.options.agree:g} %"
+    worst, median = (f"{100 * value:.3g} %" for value in (found.worst, found.median))
+    stable = "a stable answer" if found.is_checked else "an answer"
+    count = int(found.is_loaded.sum())
+    said = f"up to {found.largest:g} kPa all {count} combinations have {stable}{_snaps(found)}"
+    judged = "the beam holds" if found.holds else "the beam can not be trusted"
+    off = f"its tips are off by {median} (median) … {worst} of displacement"
+    return f"{said}; {judged}: {off} (asked {agree})"
+
+
+def _unanswered(found: Prediction) -> str:
+    """Some have none: what happens first, and what of the workspace is lost."""
+    loaded, failed = int(found.is_loaded.sum()), found.not_computed
+    parts = []
     first = found.first_to_end
-    if found.unanswered == 0 and first is None:
-        agree = f"{100 * found.options.agree:g} %"
-        worst, median = (f"{100 * value:.3g} %" for value in (found.worst, found.median))
-        said = f"up to {found.largest:g} kPa all {loaded} combinations have a stable answer"
-        judged = "the beam holds" if found.holds else "the beam can not be trusted"
-        off = f"its tips are off by {median} (median) … {worst} of displacement"
-        return f"{_condition(found)}, {said}{_snaps(found)}; {judged}: {off} (asked {agree})"
-    assert first is not None
-    ray, result = found.rays[first], found.result(first)
-    lost = f"{found.unanswered} of {loaded} combinations have no stable answer"
-    exists = "does not exist" if found.unanswered == loaded else "exists in part only"
-    return (
-        f"{_condition(found)}, this section {_verb(found, first)} at {result.critical:.3g} kPa "
-        f"({ray.text}{_place(result)}); "
-        f"{lost}: the beam's workspace at {found.largest:g} kPa {exists}"
-    )
+    lost = found.unanswered - failed
+    if first is not None and lost:
+        ray, result = found.rays[first], found.result(first)
+        parts.append(
+            f"this section {_verb(found, first)} at {result.critical:.3g} kPa "
+            f"({ray.text}{_place(result)})"
+        )
+        exists = "does not exist" if lost == loaded else "exists in part only"
+        parts.append(
+            f"{lost} of {loaded} combinations {_have(lost)} no stable answer: "
+            f"the beam's workspace at {found.largest:g} kPa {exists}"
+        )
+    worst = found.first_to_fail
+    if failed and worst is not None:
+        result = found.result(worst)
+        parts.append(
+            f"{failed} of {loaded} combinations {_have(failed)} no answer that is known: "
+            f"{result.status.value} at {result.critical:.3g} kPa ({found.rays[worst].text})"
+        )
+    return "; ".join(parts)
 
 
 def advice(found: Prediction) -> str | None:
     """What may be done about it; None where there is nothing to be done."""
-    if not found.has_answers or found.first_to_end is None:
+    if not found.has_answers or found.unanswered == 0:
         return None
-    box = f"stay below {found.stable_box:.3g} kPa in every supply"
+    first = found.first_to_end
+    if first is None or found.unanswered == found.not_computed:
+        return "try again with --resume, more --seconds, or another --size or --layers"
+    stay = f"stay below {_down(found.stable_box)} kPa in every supply"
     if found.options.wound in (Wound.CHAMBERS, Wound.BOTH):
-        return f"{box}, or thicken the walls"
-    return f"{box}, or wind every chamber (--law wound shows what that does)"
+        return f"{stay}, or thicken the walls that give way"
+    if found.result(first).status is Status.LIMIT_POINT and found.growth(first) >= BALLOON:
+        return f"{stay}, or wind every chamber (--law wound shows what that does)"
+    return f"{stay}, or thicken the walls that give way, and wind every chamber"
+
+
+def _have(count: int) -> str:
+    return "has" if count == 1 else "have"
+
+
+def _down(pressure: float) -> str:
+    """To three digits, never more than it is."""
+    if pressure <= 0:
+        return "0"
+    unit = 10.0 ** (np.floor(np.log10(pressure)) - 2)
+    return f"{np.floor(pressure / unit) * unit:.6g}"
 
 
 def _snaps(found: Prediction) -> str:
@@ -70,14 +103,14 @@ def _verb(found: Prediction, number: int) -> str:
     result = found.result(number)
     if result.status is Status.LIMIT_POINT:
         return "balloons" if found.growth(number) >= BALLOON else "snaps"
-    return "creases" if result.creases else VERBS[result.status]
+    return "creases" if result.is_local else "buckles"
 
 
 def _place(result: RayResult) -> str:
-    """Where it happens, where that is known."""
-    if np.isnan(result.mode_at).any():
+    """Where it happens, where only a small part of the section moves."""
+    if not result.is_local:
         return ""
-    x, y, z = result.mode_at
+    x, y, z = np.round(result.mode_at, 1) + 0.0
     return f", most of all near ({x:.1f}, {y:.1f}, {z:.1f}) mm"
 
 

@@ -7,7 +7,7 @@ pressure on the walls and the thrust on the caps; its second is symmetric becaus
 closed.
 
 In the mixed form of nearly or wholly incompressible laws the hydrostatic pressure p is unknown too:
-Π(x, p) = ∫ W(C) + p ln J − p²/(2λ) dV − Σ P_i V_i(x), with p linear on each element and continuous
+Π(x, p) = ∫ W(C) + p ln J − p²/(2Λ) dV − Σ P_i V_i(x), with p linear on each element and continuous
 (Taylor and Hood's pair). It is stationary, no minimum: its tangent at a stable equilibrium has as
 many negative eigenvalues as there are hydrostatic pressures.
 """
@@ -131,7 +131,7 @@ class Equilibrium:
     def strain_energy(self, state: State) -> float:
         """∫ W dV and what windings store [mN mm]; infinite where an element is inverted.
 
-        In the mixed form with p ln J − p²/(2λ), which is λ/2 (ln J)² where the form is met.
+        In the mixed form with p ln J − p²/(2Λ), which is Λ/2 (ln J)² where the form is met.
         """
         _, C, least = self.deformation(state)
         if least <= 0:

@@ -15,13 +15,13 @@ __all__ = ["Mixed"]
 
 
 class Mixed:
-    """∫ p ln J − p²/(2λ) dV with p given at the corners of a body.
+    """∫ p ln J − p²/(2Λ) dV with p given at the corners of a body.
 
     Parameters
     ----------
     body : of an element with a stable pair.
     blocks : (n,) block row of each node; −1 for a node that is held.
-    compliance : 1/λ [1/kPa], 0 for an incompressible material.
+    compliance : 1/Λ [1/kPa], 0 for an incompressible material.
 
     Raises
     ------
@@ -44,12 +44,12 @@ class Mixed:
         return np.asarray(hydrostatic[self._body.corners] @ self._values.T)
 
     def density(self, hydrostatic: FloatArray, log_J: FloatArray) -> FloatArray:
-        """(e, q) p ln J − p²/(2λ) [kPa]."""
+        """(e, q) p ln J − p²/(2Λ) [kPa]."""
         p = self.at_points(hydrostatic)
         return np.asarray(p * log_J - self._scale / 2 * p**2)
 
     def forces(self, hydrostatic: FloatArray, log_J: FloatArray) -> FloatArray:
-        """(m,) ∫ N (ln J − p/λ) dV [mm³]."""
+        """(m,) ∫ N (ln J − p/Λ) dV [mm³]."""
         gap = self._body.weights * (log_J - self._scale * self.at_points(hydrostatic))
         at, by_corner = self._body.corners.ravel(), (gap @ self._values).ravel()
         return np.asarray(np.bincount(at, by_corner, self._size), dtype=np.float64)
@@ -64,7 +64,7 @@ class Mixed:
 
     @property
     def compliance(self) -> UpperMatrix:
-        """The upper triangle of ∫ N Nᵀ/λ dV [mm³/kPa]."""
+        """The upper triangle of ∫ N Nᵀ/Λ dV [mm³/kPa]."""
         mass = self._mass
         return UpperMatrix(mass.starts, mass.indices, self._scale * mass.data)
 

@@ -103,8 +103,8 @@ def wind(body: Body, where: Wound, thread: Thread) -> Winding:
 
 
 def _is_outside(extrusion: Extrusion) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """(w,) boundary quadrangles on the section's outer contour: their normal leaves the centre."""
+    """(w,) boundary quadrangles on the outer contour: their normal leaves the ring's axis."""
     a, b = (extrusion.points[extrusion.walls[:, k], :2] for k in (0, 1))
-    edge, middle = b - a, (a + b) / 2 - extrusion.section.moments.centroid
+    edge, middle = b - a, (a + b) / 2
     leaves = edge[:, 1] * middle[:, 0] - edge[:, 0] * middle[:, 1] > 0
     return np.asarray((extrusion.supply == 0) & leaves)

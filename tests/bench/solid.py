@@ -35,7 +35,7 @@ from tests.bench.solid_growth import growth
 from tests.bench.solid_laws import laws
 from tests.bench.solid_runs import three_chamber_check, voronoi_check
 
-SIZES = (1.0, 0.7, 0.5)
+SIZES = (1.0, 0.5, 0.35)
 """Of the section's triangles, over the standard ones; coarser is not to be had, since all edges of
 the outline are kept: 2.0 gives as many triangles as 1.0."""
 
@@ -62,7 +62,7 @@ def _full(folder: Path) -> dict[str, Part]:
         "assembly": partial(assembly, 20_000, repeats=9),
         "felupe": partial(felupe_agreement, 20_000),
         "direct": partial(direct_solvers, ((1, 4), (2, 6)), repeats=3),
-        "growth": partial(growth, (2, 4, 8), SIZES, (4, 1.0), repeats=5),
+        "growth": partial(growth, (2, 4, 8), SIZES, (4, 1.0), repeats=3),
         "laws": partial(laws, 4),
         "drawn": partial(three_chamber_check, folder, []),
         "voronoi": partial(voronoi_check, folder, _given(), []),

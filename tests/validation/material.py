@@ -1,8 +1,8 @@
 """What real materials do, against theorems and prototypes: PHYSICS, the solid.
 
 The interior is read off between neighbouring planes of nodes whose distance from both ends is more
-than a quarter of the length: the mean of their strains. At H/D = 10 that is two and a half diameters
-from clamp and cap.
+than a quarter of the length: the mean of their strains. At H/D = 10 that is two and a half
+diameters from clamp and cap.
 """
 
 from __future__ import annotations

@@ -13,6 +13,8 @@ from femcheck.cli.application import run
 from femcheck.continuation.direct import Pardiso
 from tests.femcheck.check.small import Coarse, design_of, three_circles
 
+NEO = ["disc.json", "--law", "neo-hookean"]
+GENT = ["disc.json", "--law", "gent"]
 OPEN = {"skin": 0, "wall": 0, "rounding": 0, "smallest_chamber": 0}
 CHEAP = ["--element", "tet4", "--layers", "2", "--size", "9", "--workers", "1"]
 
@@ -23,6 +25,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
     monkeypatch.setattr(femcheck.cli.run, "Subject", Coarse)
     design_of(three_circles()).save(tmp_path / "disc.json")
+    stiff = {"shear_modulus": 150.0}
+    design_of(three_circles(), actuator=stiff).save(tmp_path / "stiff.json")
     touching = {"supply": 1, "center": [12, 0], "radius": 4}
     design_of([touching, *three_circles()[1:]], seal=OPEN).save(tmp_path / "open.json")
     return tmp_path
@@ -112,6 +116,32 @@ def test_seal(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (["disc.json", "--workers", "0"], ["--workers", "greater than or equal to 1"]),
         (["disc.json", "--seal", "-1"], ["--seal", "above 0"]),
         (["disc.json", "--nonsense"], ["--nonsense"]),
+        (["disc.json", "--law", "foo"], ["--law", "foo", "rigid-section, neo-hookean, gent"]),
+        (["disc.json", "--nu", "0.4"], ["--nu", "0.4", "rigid-section is no material"]),
+        (["disc.json", "--wind", "outer"], ["--wind", "outer", "rigid-section is no material"]),
+        (["disc.json", "--winding", "1e4"], ["--winding", "rigid-section is no material"]),
+        (["disc.json", "--constant", "Jm=3"], ["--constant", "Jm=3", "is no material"]),
+        ([*NEO, "--nu", "0.6"], ["--nu", "0.6", "0.5"]),
+        ([*NEO, "--nu", "nan"], ["--nu", "nan"]),
+        ([*NEO, "--nu", "-1"], ["--nu", "-1"]),
+        ([*NEO, "--wind", "sideways"], ["--wind", "sideways", "chambers, outer, both"]),
+        ([*NEO, "--winding", "1e4"], ["--winding", "--law wound or --wind"]),
+        ([*NEO, "--wind", "outer", "--winding", "-1"], ["--winding", "-1", "N/m, above 0"]),
+        ([*NEO, "--wind", "outer", "--winding", "nan"], ["--winding", "nan", "above 0"]),
+        ([*NEO, "--wind", "outer", "--winding", "inf"], ["--winding", "inf", "above 0"]),
+        ([*GENT, "--constant", "Jm"], ["--constant", "Jm", "NAME=NUMBER"]),
+        ([*GENT, "--constant", "=3"], ["--constant", "=3", "NAME=NUMBER"]),
+        ([*GENT, "--constant", "Jm=nan"], ["--constant", "Jm=nan", "NAME=NUMBER"]),
+        ([*GENT, "--constant", "Jm=x"], ["--constant", "Jm=x", "NAME=NUMBER"]),
+        ([*GENT, "--constant", "K=3"], ["--constant: K = 3", "gent takes Jm"]),
+        ([*GENT, "--constant", "Jm=0"], ["--constant: Jm = 0", "above 0"]),
+        ([*NEO, "--constant", "K=3"], ["--constant: K = 3", "neo-hookean takes no constants"]),
+        ([*NEO, "--slenderness", "0"], ["--slenderness", "0", "H = 5…5000 mm, D = 30 mm"]),
+        ([*NEO, "--slenderness", "-1"], ["--slenderness", "-1", "H/D"]),
+        ([*NEO, "--slenderness", "nan"], ["--slenderness", "nan", "H/D"]),
+        ([*NEO, "--slenderness", "1e9"], ["--slenderness", "H = 5…5000 mm"]),
+        ([*NEO, "--element", "tet4"], ["--element", "tet4", "no stable pair", "wedge18"]),
+        (["stiff.json", *NEO[1:]], ["actuator.shear_modulus", "150", "contradicts E = 300 kPa"]),
     ],
     ids=lambda value: " ".join(value[-2:]) if isinstance(value, list) else None,
 )
@@ -155,7 +185,13 @@ def test_pardiso_that_is_missing(
 
 def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["run", "--help"]) == 0
-    assert "--agree" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    for option in (
+        *("--out", "--seal", "--agree", "--law", "--nu", "--constant", "--wind", "--winding"),
+        *("--slenderness", "--workers", "--layers", "--size", "--element", "--solver"),
+        *("--seconds", "--gmsh", "--gmsh-seconds", "--resume"),
+    ):
+        assert f"{option} " in said
     assert run(["--version"]) == 0
     assert capsys.readouterr().out.startswith("femcheck ")
 

