@@ -97,6 +97,7 @@ def _differences(before: Any, now: Any, key: str = "") -> Iterator[tuple[str, An
     """Keys of nested tables whose values differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
         for name in before | now:
-            yield from _differences(before.get(name), now[name], f"{key}.{name}" if key else name)
+            inner = f"{key}.{name}" if key else name
+            yield from _differences(before.get(name), now.get(name), inner)
     elif before != now:
         yield key, before, now

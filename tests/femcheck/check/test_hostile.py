@@ -221,3 +221,14 @@ def test_a_process_that_really_dies(quick: Quick, tmp_path: Path) -> None:
     answered = sum(one.status is Status.CONVERGED for one in result.results.values())
     assert answered >= 4 * 27 - 2
     assert set(kept_files(folder)) <= set(kept_files(quick[1]))
+
+
+def test_a_question_less_than_what_is_kept_is_another_one() -> None:
+    """A constant that was given and is not given now."""
+    from femcheck.check.folder import _differences
+
+    kept = {"question": {"constants": {"Jm": 30.0}, "law": "gent"}}
+    now = {"question": {"constants": {}, "law": "gent"}}
+    assert list(_differences(kept, now)) == [("question.constants.Jm", 30.0, None)]
+    assert list(_differences(now, kept)) == [("question.constants.Jm", None, 30.0)]
+    assert not list(_differences(kept, kept))

@@ -1,0 +1,113 @@
+"""What a trace makes of paths that turn, jump and fail: scripted points, no solid."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from femcheck.continuation.outcome import Statistics, Status
+from femcheck.continuation.path import PathPoint
+from femcheck.continuation.stepper import Failed, Leg, Slope
+from femcheck.continuation.trace import PathSteps, _Trace
+
+STATE: Any = None
+
+
+def point(load: float, volume: float, growth: float = 1.0, unstable: int = 0) -> PathPoint:
+    return PathPoint(STATE, load, volume, growth, unstable)
+
+
+class Scripted:
+    """Gives one thing after the other, whatever is asked for; finds every stop that is asked at."""
+
+    def __init__(self, script: list[PathPoint | Failed], slope: float = 0.5) -> None:
+        self._script = iter(script)
+        self._slope = Slope(np.array([1.0 - slope, slope]), np.zeros(1))
+        self.scale = np.array([100.0, 100.0])
+        self.iterations = 3
+        self.spent = Statistics()
+        self.lengths: list[float] = []
+
+    def start(self) -> tuple[PathPoint, Slope]:
+        return point(0.0, 100.0), self._slope
+
+    def rise(self, slope: Slope, length: float) -> float:
+        return float(slope.plane[1] * self.scale[1] * length)
+
+    def step(self, leg: Leg, length: float) -> tuple[PathPoint | Failed, Slope | None, float]:
+        self.lengths.append(length)
+        return next(self._script), self._slope, length
+
+    def at(self, load: float, near: PathPoint) -> PathPoint | None:
+        return point(load, near.volume)
+
+
+def trace(script: list[PathPoint | Failed], stops: list[float], slope: float = 0.5) -> Any:
+    stepper: Any = Scripted(script, slope)
+    done = _Trace(PathSteps(), stepper, stops, None)
+    return done, done.follow()
+
+
+def test_a_stop_that_a_snap_jumps_over_is_solved_for() -> None:
+    """A limit point at 49, back to 47, and stable again at 55: the stop at 50 lies between."""
+    script = [
+        point(49.0, 130.0, 5.0),
+        point(47.0, 140.0, -5.0, 1),
+        point(55.0, 150.0),
+        point(100.0, 160.0),
+    ]
+    done, (status, critical) = trace(script, [50.0, 100.0])
+    assert status is Status.CONVERGED
+    assert np.isnan(critical)
+    assert [found.load for found in done.found] == [50.0, 100.0]
+    assert len(done.snaps) == 1
+    assert 49.0 <= done.snaps[0] < 50.0
+    assert done.lost is None  # what was lost there was won again
+
+
+def test_a_path_that_stays_lost_ends_at_its_limit() -> None:
+    falling = [point(47.0 - k, 140.0 + 20 * k, -5.0, 1) for k in range(6)]
+    done, (status, critical) = trace([point(49.0, 130.0, 5.0), *falling], [50.0])
+    assert status is Status.LIMIT_POINT
+    assert critical == pytest.approx(49.0, abs=1.0)
+    assert done.snaps == []
+    assert done.found == [None]
+    assert len(done.points) < 8  # half a volume at rest behind the limit, no more
+
+
+def failed(status: Status, unstable: int | None) -> Failed:
+    return Failed(status, unstable, STATE, 40.0)
+
+
+def test_a_time_out_is_no_buckling() -> None:
+    script = [point(40.0, 120.0), failed(Status.TIME_OUT, 2)]
+    _, (status, critical) = trace(script, [50.0], slope=0.01)
+    assert status is Status.TIME_OUT
+    assert critical == 40.0
+
+
+@pytest.mark.parametrize(("unstable", "slope"), [(2, 0.01), (1, 0.06)])
+def test_a_short_step_that_begins_unstable_tells_a_bifurcation(unstable: int, slope: float) -> None:
+    fails = [failed(Status.STEP_TOO_SMALL, unstable)] * 30
+    done, (status, critical) = trace([point(40.0, 120.0), *fails], [50.0], slope)
+    assert status is Status.BUCKLED
+    assert critical == 40.0
+    assert done.lost is not None
+
+
+def test_one_direction_lost_on_a_flat_path_is_followed_down_first() -> None:
+    """It may be a limit point: the step is halved as far as it goes."""
+    fails = [failed(Status.STEP_TOO_SMALL, 1)] * 30
+    stepper: Any = Scripted([point(40.0, 120.0), *fails], 0.01)
+    done = _Trace(PathSteps(), stepper, [50.0], None)
+    status, _ = done.follow()
+    assert status is Status.BUCKLED
+    assert stepper.lengths[-1] < 2e-4
+
+
+@pytest.mark.parametrize("unstable", [0, None])
+def test_what_fails_without_a_lost_direction_has_failed(unstable: int | None) -> None:
+    fails = [failed(Status.INVERTED, unstable)] * 30
+    _, (status, critical) = trace([point(40.0, 120.0), *fails], [50.0])
+    assert status is Status.INVERTED
+    assert critical == 40.0
