@@ -49,7 +49,9 @@ def test_moduli() -> None:
     mu = 300 / 2.8
     assert gent["λ"][0] == pytest.approx(2 * mu * 0.4 / 0.2)
     assert gent["Λ"][0] == pytest.approx(gent["λ"][0] - 2 * mu / 20)
-    assert gent["Λ"][1] == "the design"
+    assert gent["Λ"][1] == "of E and ν"
+    assert gent["E"][1] == "the design"
+    assert gent["ν"][1] == "given"
 
 
 def test_rigid_section() -> None:
