@@ -46,7 +46,7 @@ def checks(full: bool) -> list[Check]:
         Check("linear response", partial(linear_rows, (0.0, 0.3, 0.45, 0.5), 10.0, 20, 0.002)),
         Check("three wound round chambers", wound_rows),
         Check("three chambers balloon", partial(limit_rows, 6)),
-        Check("three chambers balloon, other elements", element_rows),
+        Check("three chambers balloon, another element", element_rows),
         Check("three chambers balloon, long", long_rows),
     ]
 
@@ -177,18 +177,18 @@ def limit_row(name: str, result: RayResult, expected: float, share: float) -> Ro
 
 
 def element_rows() -> Iterator[Row]:
-    """Other element families find the same limit; ours with twice the layers the reference."""
+    """Another family of elements finds the same limit; ours with twice the layers the reference."""
     subject = Subject("three", three_chambers())
     law = NeoHookean(300.0, 0.5)
     fine = traced(solid_of(subject, law, 8), (50.0,)).critical
-    for element, layers in (("wedge18", 4), ("hex27", 4), ("tet10", 8)):
-        found = traced(solid_of(subject, law, layers, element), (50.0,)).critical
-        name = f"{element}, {layers} layers: limit pressure over wedge18's with 8"
+    for element in ("wedge18", "tet10"):
+        found = traced(solid_of(subject, law, 4, element), (50.0,)).critical
+        name = f"{element}, 4 layers: limit pressure over wedge18's with 8"
         yield Row(name, "another mesh", 1.0, found / fine, 0.01)
 
 
 def long_rows() -> Iterator[Row]:
     """Towards the infinitely long actuator, where clamp and cap are far."""
     subject = slender_copy(Subject("three", three_chambers()), 8.0)
-    result = traced(solid_of(subject, NeoHookean(300.0, 0.5), 16), (50.0,))
+    result = traced(solid_of(subject, NeoHookean(300.0, 0.5), 12), (50.0,))
     yield limit_row("three chambers, H/D = 8", result, 21.9, 0.03)
