@@ -49,7 +49,7 @@ def _unanswered(found: Prediction) -> str:
             f"this section {_verb(found, first)} at {result.critical:.3g} kPa "
             f"({ray.text}{_place(result)})"
         )
-        exists = "does not exist" if lost == loaded else "exists in part only"
+        exists = "does not exist" if found.unanswered == loaded else "exists in part only"
         parts.append(
             f"{lost} of {loaded} combinations {_have(lost)} no stable answer: "
             f"the beam's workspace at {found.largest:g} kPa {exists}"

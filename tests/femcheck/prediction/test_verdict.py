@@ -99,6 +99,15 @@ def test_nothing_exists() -> None:
     assert said.endswith("workspace at 40 kPa does not exist")
 
 
+def test_nothing_exists_as_far_as_it_is_known() -> None:
+    """Not a part of the workspace is left, though why one ray ends is not known."""
+    rays, _ = rays_of(soft_subject().pressures)
+    ends = {ray.direction: (Status.LIMIT_POINT, 3.0) for ray in rays}
+    said = sentence(faked(ends | {SLANTED: (Status.STEP_TOO_SMALL, 2.5)}))
+    assert "workspace at 40 kPa does not exist" in said
+    assert "1 of 26 combinations has no answer that is known" in said
+
+
 def test_a_ray_that_no_combination_is_on_takes_none_of_them_away() -> None:
     """With a lowest level above zero each supply alone is followed, but is not asked for.
 
