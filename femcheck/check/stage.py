@@ -13,7 +13,7 @@ __all__ = ["Stage"]
 class Stage:
     """A solid at all pressure combinations.
 
-    mesh : "standard" or "coarse". penalty : c of the law; NaN for a law without.
+    mesh : "standard" or "coarse". penalty : c of the law.
     follows : name of the stage whose results at the same pressures are a first guess; or None.
     """
 

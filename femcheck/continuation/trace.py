@@ -138,6 +138,7 @@ class _Trace:
                 self.snaps.append(ended[1])
                 self._catch_up(tried)
                 ended, self.lost, tries = None, None, self._steps.tries
+                self.volume = float("nan")
             self._take(tried, ended)
             if ended is not None and self._is_far(ended, tried):
                 return ended
@@ -203,6 +204,7 @@ class _Trace:
         if not is_short or (is_flat and length / 2 >= self._steps.smallest):
             return False
         self.lost = failed.state, failed.load
+        self.volume = leg.here.volume
         return True
 
     def _ending(self, leg: Leg, there: PathPoint, length: float) -> End:

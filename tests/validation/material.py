@@ -13,8 +13,7 @@ from functools import partial
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.design import Actuator, Design, DrawnChamber, Grid
-from beamopt.seal import Seal
+from beamopt.design import Design, DrawnChamber
 from femcheck.check.case import Solid, rest_slopes, workshop
 from femcheck.check.subject import Subject, slender_copy
 from femcheck.continuation.outcome import Status
@@ -28,7 +27,7 @@ from femcheck.prediction.ray_trace import RayResult, RayTask, trace_ray
 from femcheck.prediction.rays import Ray
 from femcheck.solid.winding import Wound
 from tests.validation.check import Check, Row
-from tests.validation.solid import three_chambers
+from tests.validation.solid import drawn, three_chambers
 
 BETTI = "PHYSICS: (1 − 2ν) × the beam, any section (Betti)"
 PROTOTYPE = "PHYSICS: a prototype"
@@ -58,15 +57,7 @@ def round_chambers() -> Design:
         DrawnChamber(supply=k + 1, center=(17.5 * np.cos(a), 17.5 * np.sin(a)), radius=4.5)
         for k, a in enumerate(angles.tolist())
     ]
-    return Design(
-        schema="beamopt-design/1",
-        grid=Grid(),
-        drawing=chambers,
-        wall_elements=4,
-        seal=Seal(),
-        actuator=Actuator(),
-        pressures=(0.0, 50.0, 100.0),
-    )
+    return drawn(chambers)
 
 
 def solid_of(

@@ -31,6 +31,11 @@ def three_chambers() -> Design:
         DrawnChamber(supply=k + 1, r=(13.0, 22.0), phi=(120.0 * k - 40.0, 120.0 * k + 40.0))
         for k in range(3)
     ]
+    return drawn(chambers)
+
+
+def drawn(chambers: list[DrawnChamber]) -> Design:
+    """Chambers in the ring of 10…25 mm, at 0, 50 and 100 kPa."""
     return Design(
         schema="beamopt-design/1",
         grid=Grid(),

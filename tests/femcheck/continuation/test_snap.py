@@ -63,6 +63,20 @@ def test_a_stop_that_a_snap_jumps_over_is_solved_for() -> None:
     assert len(done.snaps) == 1
     assert 49.0 <= done.snaps[0] < 50.0
     assert done.lost is None  # what was lost there was won again
+    assert np.isnan(done.volume)
+
+
+def test_growth_is_that_of_the_last_end_and_not_of_a_snap() -> None:
+    script = [
+        point(49.0, 130.0, 5.0),
+        point(47.0, 140.0, -5.0, 1),
+        point(55.0, 150.0),
+        point(60.0, 180.0),
+        *[failed(Status.STEP_TOO_SMALL, 2)] * 30,
+    ]
+    done, (status, critical) = trace(script, [50.0, 100.0], slope=0.06)
+    assert (status, critical) == (Status.BUCKLED, 60.0)
+    assert done.grown(done.volume) == pytest.approx(1.8)
 
 
 def test_a_path_that_stays_lost_ends_at_its_limit() -> None:

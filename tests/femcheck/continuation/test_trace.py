@@ -12,7 +12,6 @@ from beamopt.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import (
     DirectSolver,
-    Pardiso,
     SingularMatrixError,
     direct_solver,
 )
@@ -26,23 +25,13 @@ from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State
+from tests.femcheck.inertia import needs_inertia
 from tests.femcheck.solid.tubes import tube
 
 E = 300.0
 PRESS = np.array([1.0, 0.0, 0.0])
 SUCK = -PRESS
 FAR = 200.0  # kPa that no soft tube holds
-
-
-def counts() -> bool:
-    try:
-        Pardiso()
-    except ImportError:
-        return False
-    return True
-
-
-needs_inertia = pytest.mark.skipif(not counts(), reason="PARDISO is not installed")
 
 
 @pytest.fixture(scope="module")

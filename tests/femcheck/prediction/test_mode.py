@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from femcheck.assembly.reduction import UpperMatrix
-from femcheck.continuation.direct import Pardiso, direct_solver
+from femcheck.continuation.direct import direct_solver
 from femcheck.continuation.mode import LOCAL, unstable_mode
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
@@ -19,21 +19,11 @@ from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.solid.body import Body, discretise
 from femcheck.solid.equilibrium import Equilibrium, actuator
+from tests.femcheck.inertia import needs_inertia
 from tests.femcheck.solid.tubes import tube, tube_section
 
 E = 300.0
 SUCK = np.array([-1.0, 0.0, 0.0])
-
-
-def counts() -> bool:
-    try:
-        Pardiso()
-    except ImportError:
-        return False
-    return True
-
-
-needs_inertia = pytest.mark.skipif(not counts(), reason="PARDISO is not installed")
 
 
 def blistered(place: float, wall: float) -> Body:

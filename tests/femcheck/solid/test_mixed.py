@@ -23,6 +23,7 @@ from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.plate import rotation
 from femcheck.solid.state import State
+from tests.femcheck.inertia import needs_inertia
 from tests.femcheck.lattice import (
     LENGTH,
     bent_state,
@@ -145,11 +146,9 @@ def test_the_tangent_s_block_of_pressures_is_minus_the_compliance(problem: Equil
     assert block.sum() == pytest.approx(expected, rel=1e-12, abs=0)
 
 
+@needs_inertia
 def test_inertia_at_rest_is_the_number_of_hydrostatic_pressures(problem: Equilibrium) -> None:
-    try:
-        solver = Pardiso()
-    except ImportError:
-        pytest.skip("PARDISO is not installed, and SuperLU can not count")
+    solver = Pardiso()
     rest, nothing = problem.rest(), np.zeros(3)
     solver.factor(problem.tangent(rest, nothing, problem.forces(rest, nothing)))
     assert solver.negative_eigenvalues == problem.hydrostatic_unknowns
