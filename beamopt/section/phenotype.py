@@ -30,10 +30,12 @@ class Phenotypes:
 
     moments : Moments with one leading axis (n,).
     neighbour_ratio : (n,) edges between different types over edges between equal ones.
+    labels : (n, radial, angular) types of elements, where they were asked for; else (1, …).
     """
 
     moments: Moments
     neighbour_ratio: FloatArray
+    labels: LabelArray
 
 
 def phenotypes(
@@ -41,11 +43,13 @@ def phenotypes(
     candidates: Sequence[FeaturePoints],
     wall_elements: int,
     rules: SealRules = UNSEALED,
+    keep_labels: bool = False,
 ) -> Phenotypes:
     """Rasterise, wall, seal and measure every candidate; the same numbers as one by one."""
     ends = np.cumsum([0] + [len(points) for points in candidates])
     raw = np.zeros((len(candidates), 4, 6))
     edges = np.zeros((len(candidates), 2))
+    kept = np.zeros((len(candidates) if keep_labels else 1, *grid.shape), dtype=np.uint8)
     if candidates:
         x, y, types = (
             np.concatenate([getattr(points, name) for points in candidates])
@@ -55,12 +59,14 @@ def phenotypes(
         integrals = grid.radial_integrals, grid.angular_integrals
         if rules == UNSEALED:
             ring = grid.is_full_ring
-            _measure(x, y, types, ends, tiles, steps, ring, *integrals, raw, edges)
+            _measure(x, y, types, ends, tiles, steps, ring, *integrals, raw, edges, kept)
         else:
             table = seal_table(grid, rules)
             space = work(grid, table)
-            _measure_sealed(x, y, types, ends, tiles, steps, table, space, *integrals, raw, edges)
-    return Phenotypes(Moments(raw), neighbour_ratio(edges[:, 0], edges[:, 1]))
+            _measure_sealed(
+                x, y, types, ends, tiles, steps, table, space, *integrals, raw, edges, kept
+            )
+    return Phenotypes(Moments(raw), neighbour_ratio(edges[:, 0], edges[:, 1]), kept)
 
 
 @compiled
@@ -76,10 +82,11 @@ def _measure(
     angular: FloatArray,
     raw: FloatArray,
     edges: FloatArray,
+    kept: LabelArray,
 ) -> None:
-    labels = np.zeros((radial.shape[1], angular.shape[0] - 1), dtype=np.uint8)
     for k in range(raw.shape[0]):
         a, b = ends[k], ends[k + 1]
+        labels = kept[k if kept.shape[0] > 1 else 0]
         labels[:] = 0
         nearest_types(x[a:b], y[a:b], types[a:b], tiles, labels)
         add_walls(labels, wall_steps, periodic)
@@ -101,10 +108,11 @@ def _measure_sealed(
     angular: FloatArray,
     raw: FloatArray,
     edges: FloatArray,
+    kept: LabelArray,
 ) -> None:
-    labels = np.zeros((radial.shape[1], angular.shape[0] - 1), dtype=np.uint8)
     for k in range(raw.shape[0]):
         a, b = ends[k], ends[k + 1]
+        labels = kept[k if kept.shape[0] > 1 else 0]
         sealed_cells(x[a:b], y[a:b], types[a:b], tiles, wall_steps, table, space, labels)
         sum_moments(labels, radial, angular, raw[k])
         edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])
