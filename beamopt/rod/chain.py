@@ -7,7 +7,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.rod.rod import Rod
 
-__all__ = ["chain_tips"]
+__all__ = ["chain_centrelines", "chain_tips"]
 
 SERIES_BELOW = 1e-4
 """θ² below which the coefficients of the exponential are summed as series (error below 1e-17)."""
@@ -27,21 +27,39 @@ def chain_tips(rod: Rod, rest: FloatArray) -> tuple[FloatArray, FloatArray]:
     -------
     positions (n, 3) [mm] and rotations (n, 3, 3) of the tip.
     """
-    n = len(rest)
-    position = np.tile(rod.base.position, (n, 1))
-    rotation = np.tile(rod.base.rotation, (n, 1, 1))
+    position = np.tile(rod.base.position, (len(rest), 1))
+    rotation = np.tile(rod.base.rotation, (len(rest), 1, 1))
     for k, segment in enumerate(rod.segments):
         rotation = rotation @ segment.kink
-        turn, along = rest[:, k, :3] * segment.length, rest[:, k, 3:] * segment.length
-        sine, versed, rest_of_it = _coefficients((turn * turn).sum(axis=-1))
-        once = np.cross(turn, along)
-        twice = np.cross(turn, once)
-        moved = along + versed[:, None] * once + rest_of_it[:, None] * twice
-        position = position + np.einsum("nij,nj->ni", rotation, moved)
-        spin = np.cross(turn[:, None, :], np.eye(3)).transpose(0, 2, 1)  # [uL]×
-        exponential = np.eye(3) + sine[:, None, None] * spin + versed[:, None, None] * (spin @ spin)
-        rotation = rotation @ exponential
+        position, rotation = _along(position, rotation, rest[:, k] * segment.length)
     return position, rotation
+
+
+def chain_centrelines(rod: Rod, rest: FloatArray, points: int) -> FloatArray:
+    """(n, 1 + segments · points, 3) the axes [mm] of an unloaded rod, `points` on each segment."""
+    position = np.tile(rod.base.position, (len(rest), 1))
+    rotation = np.tile(rod.base.rotation, (len(rest), 1, 1))
+    found = [position]
+    for k, segment in enumerate(rod.segments):
+        rotation = rotation @ segment.kink
+        for _ in range(points):
+            step = rest[:, k] * (segment.length / points)
+            position, rotation = _along(position, rotation, step)
+            found.append(position)
+    return np.stack(found, axis=1)
+
+
+def _along(
+    position: FloatArray, rotation: FloatArray, strains: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Go on from positions and rotations by strains times length, (n, 6)."""
+    turn, along = strains[:, :3], strains[:, 3:]
+    sine, versed, cubic = _coefficients((turn * turn).sum(axis=-1))
+    once = np.cross(turn, along)
+    moved = along + versed[:, None] * once + cubic[:, None] * np.cross(turn, once)
+    spin = np.cross(turn[:, None, :], np.eye(3)).transpose(0, 2, 1)  # [uL]×
+    exponential = np.eye(3) + sine[:, None, None] * spin + versed[:, None, None] * (spin @ spin)
+    return position + np.einsum("nij,nj->ni", rotation, moved), rotation @ exponential
 
 
 def _coefficients(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

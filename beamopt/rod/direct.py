@@ -51,18 +51,9 @@ def solve_directly(
                 y[:] = unknowns[a]
                 if b >= 0 and c >= 0 and ended[b] == FOUND and ended[c] == FOUND:
                     y += unknowns[b] - unknowns[c]
+        rest, start, turn = rests[case], starts[case], turns[case]
         ended[case], iterations[case] = newton(
-            rod,
-            at,
-            rests[case],
-            starts[case],
-            turns[case],
-            conservative,
-            True,
-            close,
-            1.0,
-            y,
-            shape,
+            rod, at, rest, start, turn, conservative, True, close, 1.0, y, shape
         )
         if ended[case] == FOUND:
             read_case(rod, at, rest, y, shape, values[case], centrelines[case])

@@ -10,18 +10,20 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
-from beamopt.rod.arc import arc_tips
-from beamopt.rod.chain import chain_tips
+from beamopt.rod.arc import arc_centreline, arc_tips
+from beamopt.rod.chain import chain_centrelines, chain_tips
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.law import cross, section_law
+from beamopt.rod.modes import StrainModes
 from beamopt.rod.response import Response
 from beamopt.rod.rod import LineLoad, PointLoad, Rod, Segment
-from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant
 
 __all__ = ["Loads", "Piece", "RodModel", "Rung", "SectionValues", "Tips"]
+
+DRAWN, DRAWN_MODES = 41, 12  # points of a backbone; modes of a loaded one
 
 
 class Rung(Enum):
@@ -172,14 +174,25 @@ class RodModel:
 
     def arcs(self, moments: Moments, pressures: FloatArray) -> FloatArray:
         """(…, n, 3) tips of the rods of one section or a batch (…), all of them arcs."""
+        return arc_tips(self._arc_strains(moments, pressures), self.length)
+
+    def _arc_strains(self, moments: Moments, pressures: FloatArray) -> FloatArray:
         strains = self.response_of(moments).strains(pressures)
         if np.any(self.curvature):
             strains = strains + np.array([0.0, self.curvature[0], self.curvature[1]])
-        return arc_tips(strains, self.length)
+        return strains
 
-    def solve(self, section: SectionValues, pressures: FloatArray) -> RodSolution:
-        """Equilibria with all that is known of them, whatever the rung."""
-        return solve_rod(self.rod(section), self.rest(section, pressures), self.tolerance)
+    def backbones(self, section: SectionValues, pressures: FloatArray) -> FloatArray:
+        """(n, m, 3) the axis from base to tip [mm] at the pressures (n, 3) [kPa]; NaN without."""
+        if self.rung is Rung.ARC:
+            strains = self._arc_strains(section.moments, pressures)
+            return arc_centreline(strains, np.linspace(0, self.length, DRAWN))
+        rod, rest = self.rod(section), self.rest(section, pressures)
+        if self.rung is Rung.CHAIN:
+            return chain_centrelines(rod, rest, DRAWN // len(self.pieces))
+        found = StrainModes().solve(rod, rest, DRAWN_MODES)
+        base = np.broadcast_to(rod.base.position, (len(rest), 1, 3))
+        return np.concatenate([base, found.centrelines, found.tips[:, None, :]], axis=1)
 
     def rod(self, section: SectionValues) -> Rod:
         """The rod of the actuator with this section, without pressure."""
