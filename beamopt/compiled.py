@@ -10,12 +10,14 @@ from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 
-__all__ = ["compiled"]
+__all__ = ["compiled", "inlined"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 SETTINGS: Any = numba.config
+
+OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "numpy"}
 
 
 @cache
@@ -44,7 +46,15 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     folder = _cache_folder(Path(function.__code__.co_filename).parent)
     before, SETTINGS.CACHE_DIR = SETTINGS.CACHE_DIR, folder
     try:
-        options = numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")
-        return cast("Callable[P, R]", options(function))
+        return cast("Callable[P, R]", numba.njit(cache=True, **OPTIONS)(function))
     finally:
         SETTINGS.CACHE_DIR = before
+
+
+def inlined(function: Callable[P, R]) -> Callable[P, R]:
+    """A kernel that stands as text in each that calls it, and is not kept by itself.
+
+    For pieces of a kernel that get many arrays in tuples: handing those over takes longer than
+    what the piece does. It may not return early.
+    """
+    return cast("Callable[P, R]", numba.njit(inline="always", **OPTIONS)(function))

@@ -10,27 +10,39 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
+from beamopt.actuator import Actuator, Loading, RodRules, rod_model
 from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.chambers import DrawnChamber, Points
+from beamopt.climb import Climb, climb
+from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
 from beamopt.model import Count, Model, Number, parse, quantity, read_json
 from beamopt.outline.outline import Outline
-from beamopt.rod.arc import arc_tips
+from beamopt.rod.ladder import RodModel, SectionValues, Tips
+from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.response import LinearResponse, linear_response
+from beamopt.rod.status import RodStatus
 from beamopt.seal import Seal
 from beamopt.section.cross_section import CrossSection
-from beamopt.section.drawing import Circle, RingPiece, Shape
+from beamopt.section.drawing import Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
-from beamopt.workspace import Workspace, workspace_of
+from beamopt.section.saint_venant import section_saint_venant
+from beamopt.workspace import Workspace, pressure_grid
 
-__all__ = ["Actuator", "Design", "Grid", "Levels", "WallElements", "load_design"]
+__all__ = [
+    "Design",
+    "Grid",
+    "Levels",
+    "WallElements",
+    "load_design",
+    "section_values",
+]
 
 SCHEMA = "beamopt-design/1"
 MOST_ELEMENTS = 4_000_000
 
-Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2000)]
 
 
@@ -66,14 +78,6 @@ def _polar_grid(**values: Any) -> PolarGrid:
     return PolarGrid(**values)
 
 
-class Actuator(Model):
-    """The extruded body and its material."""
-
-    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
-    youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
-    shear_modulus: Number = quantity(100.0, "shear modulus G", unit="kPa", low=1, high=50_000)
-
-
 def _ascending(levels: tuple[float, float, float]) -> tuple[float, float, float]:
     if not levels[0] < levels[1] < levels[2]:
         raise ValueError("three pressures in kPa, ascending")
@@ -82,48 +86,6 @@ def _ascending(levels: tuple[float, float, float]) -> tuple[float, float, float]
 
 Levels = Annotated[tuple[Pressure, Pressure, Pressure], AfterValidator(_ascending)]
 """The three levels [kPa] that each supply takes in the workspace's 27 combinations."""
-
-
-class Points(Model):
-    """Voronoi feature points [mm]; type 0 is material, 1…3 a supply."""
-
-    x: list[Position]
-    y: list[Position]
-    type: list[Annotated[int, Field(strict=True, ge=0, le=3)]]
-
-    @model_validator(mode="after")
-    def _same_length(self) -> Points:
-        if not len(self.x) == len(self.y) == len(self.type):
-            counts = f"{len(self.x)}, {len(self.y)}, {len(self.type)}"
-            raise ValueError(f"x, y, type have {counts} entries; all must have the same")
-        return self
-
-
-class DrawnChamber(Model):
-    """Either a piece of a ring (r, phi, corner) or a circle (center, radius)."""
-
-    supply: Count = quantity(..., "pressure supply of the chamber", low=1, high=3)
-    r: tuple[Position, Position] | None = quantity(None, "inner and outer radius", unit="mm")
-    phi: tuple[Position, Position] | None = quantity(None, "first and last angle", unit="degrees")
-    corner: Number | None = quantity(
-        None, "radius of the rounded corners", unit="mm", low=0, high=1000
-    )
-    center: tuple[Position, Position] | None = quantity(None, "centre of a circle", unit="mm")
-    radius: Number | None = quantity(None, "radius of a circle", unit="mm", low=0, high=1000)
-
-    @model_validator(mode="after")
-    def _is_one_shape(self) -> DrawnChamber:
-        self.build()
-        return self
-
-    def build(self) -> Shape:
-        """The shape that the section floor rasterises."""
-        given = self.model_fields_set - {"supply"}
-        if self.r and self.phi and given <= {"r", "phi", "corner"}:
-            return RingPiece(self.supply, self.r, self.phi, self.corner or 0.0)
-        if self.center and self.radius and given <= {"center", "radius"}:
-            return Circle(self.supply, self.center, self.radius)
-        raise ValueError("a chamber has either r and phi (and corner), or center and radius")
 
 
 def _even(count: int) -> int:
@@ -152,6 +114,8 @@ class Design(Model):
     seal: Seal = quantity(..., "skin, wall, islands; also rounding, smallest_chamber")
     actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
     pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
+    rod: RodRules = RodRules()
+    loads: Loading = Loading()
     notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
 
     @model_validator(mode="after")
@@ -171,6 +135,8 @@ class Design(Model):
         actuator: Actuator,
         levels: tuple[float, float, float],
         seal: Seal | None = None,
+        rod: RodRules | None = None,
+        loads: Loading | None = None,
         notes: Mapping[str, Any] | None = None,
     ) -> Design:
         """The design whose section is the Voronoi section of `points`."""
@@ -182,6 +148,8 @@ class Design(Model):
             ),
             wall_elements=wall_elements,
             seal=seal or Seal(),
+            rod=rod or RodRules(),
+            loads=loads or Loading(),
             actuator=actuator,
             pressures=levels,
             notes=dict(notes or {}),
@@ -220,12 +188,52 @@ class Design(Model):
         return linear_response(self.moments, self.actuator.youngs_modulus)
 
     @cached_property
+    def loaded_rod(self) -> RodModel:
+        """Its rod but for the section, before `climb` puts it on a rung."""
+        return rod_model(self.actuator, self.rod, self.loads, section_values)
+
+    @cached_property
+    def climb(self) -> Climb:
+        """The rod that gives its tips, and why it is on its rung of the ladder."""
+        return climb(self.loaded_rod, self.rod, self.pressures, lambda: [self.values])
+
+    @cached_property
+    def values(self) -> SectionValues:
+        """What the rod needs to know of the section."""
+        if not self.loaded_rod.loads.any or self.rod.twist == "stiff":
+            return SectionValues(self.moments)
+        grid, labels = self.section.grid, self.section.labels
+        known = section_saint_venant(grid, labels, self.loaded_rod.poissons_ratio)
+        return SectionValues(self.moments, known)
+
+    @cached_property
     def workspace(self) -> Workspace:
-        """The 27 tips at the design's pressure levels."""
-        return workspace_of(self.response, self.actuator.length, self.pressures)
+        """The 27 tips at the design's pressure levels.
+
+        Raises
+        ------
+        NoEquilibriumError : the rod has none at one of them.
+        """
+        return self.workspace_at(self.pressures)
+
+    def workspace_at(self, levels: tuple[float, float, float]) -> Workspace:
+        """The 27 tips at other levels [kPa]; see `workspace`."""
+        pressures = pressure_grid(levels)
+        tips = self.climb.model.tips(self.values, pressures, parents_on_grid())
+        return Workspace(levels, _found(tips, pressures))
 
     def tips(self, pressures: FloatArray) -> FloatArray:
         """Tips (n, 3) [mm] at pressures (n, 3) [kPa].
+
+        Raises
+        ------
+        ValueError : pressures of another shape, or not finite.
+        NoEquilibriumError : the rod has no stable equilibrium at one of them; see `solve`.
+        """
+        return _found(self.solve(pressures), pressures)
+
+    def solve(self, pressures: FloatArray) -> Tips:
+        """Tips at pressures (n, 3) [kPa], each with how it ended.
 
         Raises
         ------
@@ -234,11 +242,15 @@ class Design(Model):
         at = np.asarray(pressures, dtype=np.float64)
         if at.ndim != 2 or at.shape[1] != 3 or not np.isfinite(at).all():
             raise ValueError(f"pressures: finite and (n, 3), not {at.shape}")
-        return arc_tips(self.response.strains(at), self.actuator.length)
+        on_grid = np.array_equal(at, pressure_grid(self.pressures))
+        return self.climb.model.tips(self.values, at, parents_on_grid() if on_grid else None)
 
     def json(self) -> str:  # type: ignore[override]  # pydantic's own `json` is deprecated
         """The design file's text."""
         data = self.model_dump(by_alias=True, exclude_none=True)
+        for key, usual in (("rod", RodRules()), ("loads", Loading())):
+            if getattr(self, key) == usual:
+                del data[key]  # the paper's actuator
         return json_text(data | {"seal": self.seal.written()})
 
     def save(self, path: str | Path) -> Path:
@@ -263,3 +275,18 @@ def load_design(path: str | Path) -> Design:
     if not design.moments.is_stiff:
         raise InputError(file, "", None, "the section has no material, or too little to bend")
     return design
+
+
+def section_values(data: dict[str, Any]) -> SectionValues:
+    """What the rod needs to know of the section of a whole design, given as its file's content."""
+    design = parse(Design, data, "rod.segments")
+    section = design.section
+    nu = design.loaded_rod.poissons_ratio
+    return SectionValues(design.moments, section_saint_venant(section.grid, section.labels, nu))
+
+
+def _found(tips: Tips, pressures: FloatArray) -> FloatArray:
+    for at, status in zip(pressures, tips.status, strict=True):
+        if status is not RodStatus.CONVERGED:
+            raise NoEquilibriumError(at, status)
+    return tips.positions

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-__all__ = ["InputError"]
+from collections.abc import Sequence
+from enum import Enum
+
+__all__ = ["InputError", "NoEquilibriumError"]
 
 
 class InputError(ValueError):
@@ -32,3 +35,15 @@ class InputError(ValueError):
             said = f"{self.key} = {shown}" if self.key else shown
         parts = [part for part in (self.where, said, self.allowed) if part]
         return " ".join(": ".join(parts).split())
+
+
+class NoEquilibriumError(ValueError):
+    """A tip was asked for where the loaded rod has no stable equilibrium.
+
+    pressures : (3,) [kPa]. status : a `RodStatus`, whose value is the text for people.
+    """
+
+    def __init__(self, pressures: Sequence[float], status: Enum) -> None:
+        self.pressures, self.status = tuple(float(one) for one in pressures), status
+        at = ", ".join(f"{one:g}" for one in self.pressures)
+        super().__init__(f"no tip at {at} kPa: {status.value}")

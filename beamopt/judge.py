@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import Enum
@@ -10,14 +10,16 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.arc import arc_tips
-from beamopt.rod.response import Response
+from beamopt.rod.ladder import RodModel, Rung, SectionValues
+from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes, phenotypes
+from beamopt.section.saint_venant import section_saint_venant
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.workspace import NODES, loss, pressure_grid
 
@@ -30,6 +32,7 @@ class Status(Enum):
     JUDGED = "judged"
     NO_FEATURE_POINTS = "recombination left no feature point"
     NO_MATERIAL = "the section has no material"
+    NO_EQUILIBRIUM = "the rod has no stable equilibrium under its loads at some pressures"
     NOT_STIFF = "the section has too little material to compute its bending stiffness"
 
 
@@ -58,8 +61,7 @@ class Judge:
     Parameters
     ----------
     grid, wall_elements : the section's raster.
-    length : H [mm].
-    response_of : what makes a response of the sections' moments.
+    rod : the actuator but for its section.
     levels : the three pressure levels [kPa].
     target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
     neighbour_weight : λ of the second objective.
@@ -68,8 +70,7 @@ class Judge:
 
     grid: PolarGrid
     wall_elements: int
-    length: float
-    response_of: Callable[[Moments], Response]
+    rod: RodModel
     levels: tuple[float, float, float]
     target: FloatArray
     neighbour_weight: float
@@ -85,36 +86,58 @@ class Judge:
             raise ValueError(f"target: {NODES} finite tips (27, 3) in mm")
 
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
-        """(n, 27, 3) tips of every candidate [mm]; NaN without material."""
-        return self._tips(self._measured(candidates).moments)
+        """(n, 27, 3) tips of every candidate [mm]; NaN without material or equilibrium."""
+        return self._tips(self._measured(candidates))[0]
 
     def __call__(self, candidates: Sequence[FeaturePoints]) -> list[Verdict]:
         """One verdict a candidate; the same whatever else is in the batch."""
         measured = self._measured(candidates)
-        first = loss(self._tips(measured.moments), self.target)
+        tips, found = self._tips(measured)
+        first = loss(tips, self.target)
         second = self.neighbour_weight * measured.neighbour_ratio
-        rows = zip(candidates, measured.moments.area, measured.moments.is_stiff, strict=True)
-        statuses = [_status(len(points), area, stiff) for points, area, stiff in rows]
+        moments = measured.moments
+        rows = zip(candidates, moments.area, moments.is_stiff, found, strict=True)
+        statuses = [_status(len(points), *row) for points, *row in rows]
         return [
             Verdict(float(L), float(K)) if status is Status.JUDGED else _failed(status)
             for L, K, status in zip(first, second, statuses, strict=True)
         ]
 
     def _measured(self, candidates: Sequence[FeaturePoints]) -> Phenotypes:
-        return phenotypes(self.grid, candidates, self.wall_elements, self.rules)
+        twists = self.rod.twists
+        return phenotypes(self.grid, candidates, self.wall_elements, self.rules, twists)
 
-    def _tips(self, moments: Moments) -> FloatArray:
-        response = self.response_of(moments)
-        with np.errstate(invalid="ignore"):
-            return arc_tips(response.strains(self.pressures), self.length)
+    def _tips(self, measured: Phenotypes) -> tuple[FloatArray, NDArray[np.bool_]]:
+        """Tips (n, 27, 3), and (n,) whether all of a candidate's are there."""
+        rod, moments = self.rod, measured.moments
+        count = len(moments.area)
+        found = np.ones(count, dtype=bool)
+        if rod.rung is Rung.ARC:
+            with np.errstate(invalid="ignore"):
+                return rod.arcs(moments, self.pressures), found
+        tips = np.full((count, NODES, 3), np.nan)
+        for k in np.flatnonzero(moments.is_stiff).tolist():
+            values = self._values(measured, k)
+            result = rod.tips(values, self.pressures, parents_on_grid(), all_or_none=True)
+            tips[k], found[k] = result.positions, result.failure is None
+        return tips, found
+
+    def _values(self, measured: Phenotypes, k: int) -> SectionValues:
+        moments = Moments(measured.moments.raw[k])
+        if not self.rod.twists:
+            return SectionValues(moments)
+        labels, nu = measured.labels[k], self.rod.poissons_ratio
+        return SectionValues(moments, section_saint_venant(self.grid, labels, nu))
 
 
-def _status(points: int, area: float, is_stiff: bool) -> Status:
+def _status(points: int, area: float, is_stiff: bool, has_tips: bool) -> Status:
     if points == 0:
         return Status.NO_FEATURE_POINTS
     if area == 0:
         return Status.NO_MATERIAL
-    return Status.JUDGED if is_stiff else Status.NOT_STIFF
+    if not is_stiff:
+        return Status.NOT_STIFF
+    return Status.JUDGED if has_tips else Status.NO_EQUILIBRIUM
 
 
 def _failed(status: Status) -> Verdict:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from beamopt.design import Design
+from beamopt.errors import NoEquilibriumError
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Verdict
@@ -49,9 +51,13 @@ class Optimisation:
     def outline_loss(self) -> float:
         """L of what the best design is [mm²]: of its outline where it is sealed.
 
-        The search judges a raster; for unsealed designs the two are the same.
+        The search judges a raster; for unsealed designs the two are the same. Infinite where the
+        outline's rod has no equilibrium.
         """
-        return float(loss(self.best.workspace.tips, self.target.workspace.tips))
+        try:
+            return float(loss(self.best.workspace.tips, self.target.workspace.tips))
+        except NoEquilibriumError:
+            return math.inf
 
     @property
     def evaluations(self) -> int:

@@ -4,29 +4,43 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
+from beamopt.actuator import Actuator, Loading, RodRules, Vector, rod_model
 from beamopt.bundled import bundled_scenes
-from beamopt.design import Actuator, Design, Grid, Levels, WallElements, load_design
-from beamopt.errors import InputError
+from beamopt.climb import Climb, climb
+from beamopt.design import (
+    Design,
+    Grid,
+    Levels,
+    WallElements,
+    load_design,
+    section_values,
+)
+from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.judge import Judge
 from beamopt.model import Count, Model, Number, parse, quantity, read_text
-from beamopt.rod.response import linear_response
+from beamopt.overrides import overridden
+from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.seal import Seal
+from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.saint_venant import section_saint_venant
+from beamopt.segment_files import with_sections
 from beamopt.target import BaseFrame, Target, oddities, read_target
-from beamopt.workspace import workspace_of
+from beamopt.workspace import Workspace
 
 __all__ = ["Scene", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
-Component = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
-Vector = tuple[Component, Component, Component]
+
+SAMPLES, MOST_SAMPLES = 4, 12  # sections that the rungs are tried on
+SAMPLE = 0x5EC710  # of their streams
 
 
 class SectionRules(Model):
@@ -123,6 +137,8 @@ class Scene(Model):
     section: SectionRules = SectionRules()
     seal: Seal = Seal()
     pressures: Pressures = Pressures()
+    rod: RodRules = RodRules()
+    loads: Loading = Loading()
     target: TargetChoice = TargetChoice()
     search: Search = Search()
     stop: Stop = Stop()
@@ -148,23 +164,34 @@ class Scene(Model):
         """
         chosen = self.target
         if chosen.kind == "workspace":
-            path = Path(str(chosen.file))
-            return read_target(path, self.pressures.levels, self.actuator.length, chosen.base)
+            straight = self.climb.model.straight_length is not None
+            about = self.pressures.levels, self.actuator.length, chosen.base, straight
+            return read_target(Path(str(chosen.file)), *about)
         if chosen.kind == "section":
             return self._workspace_of_design(Path(str(chosen.file)))
         points = self.random_points(np.random.default_rng([chosen.seed]))
         design = self.design_of(points)
         if not design.section.moments.is_stiff:
             raise InputError("", "target.seed", chosen.seed, "this random section has no material")
-        return Target(design.workspace, design.section)
+        return Target(self._workspace(design, "target.seed", chosen.seed), design.section)
 
     def _workspace_of_design(self, path: Path) -> Target:
-        """A design's workspace: with its own length and material, at this scene's pressures."""
+        """A design's workspace: with its own length and material, at this scene's pressures.
+
+        Under this scene's loads, unless it comes with its own.
+        """
         design = load_design(path)
-        levels = self.pressures.levels
-        workspace = workspace_of(design.response, design.actuator.length, levels)
-        warnings = oddities(workspace.tips, levels, self.actuator.length)
+        if (design.rod, design.loads) == (RodRules(), Loading()):
+            design = design.model_copy(update={"rod": self.climbed_rules, "loads": self.loads})
+        workspace = self._workspace(design, "target.file", str(path))
+        warnings = oddities(workspace.tips, workspace.levels, self.climb.model.straight_length)
         return Target(workspace, design.section, warnings)
+
+    def _workspace(self, design: Design, key: str, value: object) -> Workspace:
+        try:
+            return design.workspace_at(self.pressures.levels)
+        except NoEquilibriumError as error:
+            raise InputError("", key, value, f"the target's section has {error}") from None
 
     @property
     def wall_elements(self) -> int:
@@ -176,10 +203,8 @@ class Scene(Model):
 
     def random_points(self, rng: np.random.Generator) -> FeaturePoints:
         """A random genotype after this scene's rules."""
-        rules = self.section
-        return FeaturePoints.random(
-            self.grid.build(), rules.feature_points, rng, rules.material_probability
-        )
+        rules, grid = self.section, self.grid.build()
+        return FeaturePoints.random(grid, rules.feature_points, rng, rules.material_probability)
 
     def design_of(self, points: FeaturePoints, notes: Mapping[str, Any] | None = None) -> Design:
         """The design that `points` make in this scene."""
@@ -190,16 +215,44 @@ class Scene(Model):
             actuator=self.actuator,
             levels=self.pressures.levels,
             seal=self.seal,
+            rod=self.climbed_rules,
+            loads=self.loads,
             notes=notes,
         )
+
+    @cached_property
+    def climb(self) -> Climb:
+        """The rod that judges sections, and why it is on its rung of the ladder."""
+        model = rod_model(self.actuator, self.rod, self.loads, section_values)
+        return climb(model, self.rod, self.pressures.levels, partial(self._samples, model))
+
+    @property
+    def climbed_rules(self) -> RodRules:
+        """The rules with what `climb` chose; as they are where that follows without samples."""
+        if not self.loads.loads.any:
+            return self.rod
+        model = self.climb.model
+        twist = "saint-venant" if model.twists else "stiff"
+        return self.rod.model_copy(update={"rung": model.rung.value, "twist": twist})
+
+    def _samples(self, model: RodModel) -> list[SectionValues]:
+        """A few random sections that the scene's search could meet."""
+        found: list[SectionValues] = []
+        for seed in range(MOST_SAMPLES):
+            points = self.random_points(np.random.default_rng([SAMPLE, seed]))
+            grid = self.grid.build()
+            section = CrossSection.from_points(grid, points, self.wall_elements, self.seal.rules)
+            if section.moments.is_stiff and len(found) < SAMPLES:
+                known = section_saint_venant(grid, section.labels, model.poissons_ratio)
+                found.append(SectionValues(section.moments, known))
+        return found
 
     def judge(self, target: Target) -> Judge:
         """What candidates are judged with."""
         return Judge(
             grid=self.grid.build(),
             wall_elements=self.wall_elements,
-            length=self.actuator.length,
-            response_of=partial(linear_response, youngs_modulus=self.actuator.youngs_modulus),
+            rod=self.climb.model,
             levels=self.pressures.levels,
             target=target.workspace.tips,
             neighbour_weight=self.search.neighbour_weight,
@@ -231,7 +284,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     if data.get("schema", SCHEMA) != SCHEMA:
         raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
     if overrides:
-        data = _overridden(data, [overrides] if isinstance(overrides, str) else overrides)
+        data = overridden(data, [overrides] if isinstance(overrides, str) else overrides)
     try:
         read = parse(Scene, data, path)
     except InputError as error:
@@ -239,27 +292,8 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
             raise
         parse(Scene, tomllib.loads(text), path)  # what is wrong with the file itself comes first
         raise InputError("--set", error.key, error.value, error.allowed) from None
+    read = read.model_copy(update={"rod": with_sections(read.rod, path.parent)})
     if read.target.file is None:
         return read
     file = str(path.parent.resolve() / read.target.file)
     return read.model_copy(update={"target": read.target.model_copy(update={"file": file})})
-
-
-def _overridden(data: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
-    """A scene's data with `section.key=value` texts put in."""
-    for override in overrides:
-        key, separator, text = override.partition("=")
-        if not separator or not key.strip() or "\n" in override:
-            raise InputError("--set", "", override, "written as section.key=value")
-        try:
-            value = tomllib.loads(f"value = {text}")["value"]
-        except (ValueError, RecursionError):
-            value = text.strip()
-        *sections, last = key.strip().split(".")
-        table = data
-        for name in sections:
-            table = table.setdefault(name, {})
-            if not isinstance(table, dict):
-                raise InputError("--set", key, text, f"{name} is no section")
-        table[last] = value
-    return data

@@ -72,8 +72,11 @@ def read_target(
     levels: tuple[float, float, float],
     length: float,
     base: BaseFrame | None = None,
+    straight: bool = True,
 ) -> Target:
     """Read a target from a CSV file with the columns p1,p2,p3,x,y,z [kPa, mm].
+
+    straight : whether the actuator is, without pressure; else no tip is expected at (0, 0, length).
 
     Rows are matched by pressure, never by their order; lines that start with # are comments. Rows
     at pressures outside the 27 combinations are left out, with a warning.
@@ -109,7 +112,7 @@ def read_target(
         )
     tips = (base or BaseFrame()).to_local(tips)
     _check_scale(path, tips, length)
-    warnings = oddities(tips, levels, length)
+    warnings = oddities(tips, levels, length if straight else None)
     if extra:
         warnings += (f"{extra} rows at other pressures than {_listed(levels)} kPa were left out",)
     return Target(Workspace(levels, tips), None, warnings)
@@ -180,10 +183,17 @@ def _check_scale(path: Path, tips: FloatArray, length: float) -> None:
 
 
 def oddities(
-    tips: FloatArray, levels: tuple[float, float, float], length: float
+    tips: FloatArray, levels: tuple[float, float, float], length: float | None
 ) -> tuple[str, ...]:
-    """What a person should be warned about in a target [mm] for an actuator of `length` [mm]."""
-    if levels[0] == 0 and not np.allclose(tips[0], (0, 0, length), atol=1e-6 * length):
+    """What a person should be warned about in a target [mm] for an actuator of `length` [mm].
+
+    length : None for an actuator that is not straight without pressure.
+    """
+    if (
+        length is not None
+        and levels[0] == 0
+        and not np.allclose(tips[0], (0, 0, length), atol=1e-6 * length)
+    ):
         place = ", ".join(f"{value:g}" for value in tips[0])
         return (
             f"the target's tip without pressure is ({place}) mm, "

@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.arc import arc_tips
-from beamopt.rod.response import Response
 
 __all__ = [
     "HEXAHEDRON_EDGES",
@@ -21,7 +19,6 @@ __all__ = [
     "node_index",
     "pressure_grid",
     "rms_distance",
-    "workspace_of",
 ]
 
 
@@ -137,10 +134,3 @@ def _lagrange(nodes: FloatArray, at: FloatArray) -> FloatArray:
         a, b = np.delete(nodes, k)
         columns.append((at - a) * (at - b) / ((nodes[k] - a) * (nodes[k] - b)))
     return np.stack(columns, axis=-1)
-
-
-def workspace_of(
-    response: Response, length: float, levels: tuple[float, float, float]
-) -> Workspace:
-    """The workspace of a uniform actuator of `length` [mm] under pressure alone."""
-    return Workspace(levels, arc_tips(response.strains(pressure_grid(levels)), length))

@@ -164,7 +164,7 @@ MISTAKES = [
     (["optimize", "random-section", "--set", "search.seed=" + "9" * 5000], "search.seed"),
     (["optimize", "random-section", "--set", "a=" + "[" * 5000], "--set: a"),
     (["optimize", "random-section", "--set", "a" + ".a" * 3000 + "=1"], "--set: a"),
-    (["optimize", "nowhere.toml"], "no such scene; a path, or one of: hand-drawn-section"),
+    (["optimize", "nowhere.toml"], "no such scene; a path, or one of: gravity, hand-drawn-section"),
     (["optimize", "random-section", "--seed", "-1"], "--seed"),
     (["optimize", "random-section", "--workers", "0"], "--workers"),
     (["optimize", "random-section", "--set", "search.population=1"], "2 … 10000"),

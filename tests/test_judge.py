@@ -4,11 +4,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.judge import Status, judge_all
+from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import phenotypes
-from beamopt.workspace import loss, workspace_of
+from beamopt.workspace import loss, pressure_grid
 from tests.validation import symmetry
 
 SCENE = load_scene("hand-drawn-section")
@@ -61,7 +62,8 @@ def test_a_sealed_scene_judges_sealed_sections(candidates: list[FeaturePoints]) 
         design = scene.design_of(points)
         assert not design.section.labels[[0, -1]].any()
         response = linear_response(design.section.moments, design.actuator.youngs_modulus)
-        tips = workspace_of(response, design.actuator.length, design.pressures).tips
+        strains = response.strains(pressure_grid(design.pressures))
+        tips = arc_tips(strains, design.actuator.length)
         assert pytest.approx(loss(tips, target.workspace.tips), rel=1e-12) == verdict.L
         assert pytest.approx(verdict.K) == JUDGE([points])[0].K  # of the points alone
 

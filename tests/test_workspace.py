@@ -10,8 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.arc import arc_tips
-from beamopt.rod.response import LinearResponse
 from beamopt.workspace import (
     HEXAHEDRON_EDGES,
     HEXAHEDRON_NODES,
@@ -19,7 +17,6 @@ from beamopt.workspace import (
     loss,
     pressure_grid,
     rms_distance,
-    workspace_of,
 )
 
 LEVELS = [(0.0, 50.0, 100.0), (-5.0, 12.0, 90.0), (10.0, 80.0, 81.0)]
@@ -159,17 +156,6 @@ def test_loss_of_a_batch() -> None:
 def test_rms_distance_of_a_shift_is_its_length() -> None:
     shifted = float(loss(some_tips() + np.array([2.0, 3.0, 6.0]), some_tips()))
     assert rms_distance(shifted, 27) == pytest.approx(7)
-
-
-def test_workspace_of_a_response_holds_its_tips() -> None:
-    response = LinearResponse(np.random.default_rng(4).normal(size=(3, 3)) * 1e-4)
-    levels = (0.0, 30.0, 100.0)
-    workspace = workspace_of(response, 80.0, levels)
-    np.testing.assert_array_equal(workspace.pressures, pressure_grid(levels))
-    np.testing.assert_array_equal(workspace.tips[0], [0, 0, 80.0])  # no pressure: straight
-    for p, tip in zip(workspace.pressures, workspace.tips, strict=True):
-        expected = arc_tips(response.matrix @ p, 80.0)
-        np.testing.assert_allclose(tip, expected, rtol=0, atol=1e-11)
 
 
 def test_misuse_names_shape_and_levels() -> None:

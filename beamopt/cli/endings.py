@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
-from beamopt.errors import InputError
+from beamopt.errors import InputError, NoEquilibriumError
 
 __all__ = ["finish"]
 
@@ -19,6 +19,8 @@ def finish(app: typer.Typer, program: str, arguments: Sequence[str]) -> int:
         code = app(list(arguments), standalone_mode=False)
     except InputError as error:
         return _complain(program, str(error))
+    except NoEquilibriumError as error:
+        return _complain(program, str(error), 1)
     except (typer.Abort, KeyboardInterrupt):
         return _complain(program, "interrupted", INTERRUPTED)
     except ImportError as error:

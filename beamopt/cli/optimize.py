@@ -57,7 +57,9 @@ def optimize_command(
 
 
 def _report(result: Optimisation, folder: Path) -> None:
-    lines = [("ended", f"{result.status.value}; {result.evaluations} sections judged")]
+    climb = result.scene.climb
+    lines = [("rod", f"{climb.model.rung.value}: {climb.reason}")]
+    lines += [("ended", f"{result.status.value}; {result.evaluations} sections judged")]
     if result.verdict.status is Status.JUDGED:
         lines += _found(result)
     else:

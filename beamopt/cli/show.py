@@ -34,8 +34,9 @@ def show_command(path: Path, out: Path | None) -> None:
     beside = file.parent / "target.csv"
     target = None
     if path.is_dir() and beside.exists():
+        straight = design.climb.model.straight_length is not None
         length = design.actuator.length
-        target = read_target(beside, design.pressures, length).workspace
+        target = read_target(beside, design.pressures, length, straight=straight).workspace
     figure = design_figure(design, target, design_title(design) or file.stem)
     save_figure(figure, figure_path)
     console.print(_terminal_picture(design.section))

@@ -8,13 +8,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import typer
 from rich.table import Table
 
 from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console
 from beamopt.design import load_design
-from beamopt.errors import InputError
+from beamopt.errors import InputError, NoEquilibriumError
+from beamopt.rod.ladder import Tips
+from beamopt.rod.status import RodStatus
 from beamopt.target import tips_csv
+from beamopt.workspace import pressure_grid
 
 __all__ = ["tips_command"]
 
@@ -22,18 +26,30 @@ __all__ = ["tips_command"]
 def tips_command(path: Path, combinations: Sequence[str], as_csv: bool) -> None:
     """Print tips as a table for people or as CSV for programs."""
     design = load_design(path / "best.json" if path.is_dir() else path)
-    pressures = _parsed(combinations) if combinations else design.workspace.pressures
-    tips = design.tips(pressures)
+    pressures = _parsed(combinations) if combinations else pressure_grid(design.pressures)
+    found = design.solve(pressures)
+    has_tip = np.array([status is RodStatus.CONVERGED for status in found.status])
     if as_csv:
-        sys.stdout.write(tips_csv(pressures, tips))
-        return
+        sys.stdout.write(tips_csv(pressures[has_tip], found.positions[has_tip]))
+    else:
+        _print_table(path, pressures, found)
+    for at, status in zip(pressures, found.status, strict=True):
+        if status is not RodStatus.CONVERGED:
+            typer.echo(f"beamopt: {NoEquilibriumError(at, status)}", err=True)
+    if not has_tip.all():
+        raise typer.Exit(1)
+
+
+def _print_table(path: Path, pressures: FloatArray, found: Tips) -> None:
     table = Table(title=f"tips of {path.name}")
     for name in ("p1", "p2", "p3"):
         table.add_column(f"{name} \\[kPa]", justify="right")
     for name in ("x", "y", "z"):
         table.add_column(f"{name} \\[mm]", justify="right", style="bold")
-    for row, tip in zip(pressures, tips, strict=True):
-        table.add_row(*(f"{p:g}" for p in row), *(f"{value:.3f}" for value in tip + 0.0))
+    for row, tip, status in zip(pressures, found.positions, found.status, strict=True):
+        there = status is RodStatus.CONVERGED
+        cells = (f"{value:.3f}" if there else "–" for value in tip + 0.0)
+        table.add_row(*(f"{p:g}" for p in row), *cells)
     console.print(table)
 
 

@@ -19,8 +19,7 @@ from beamopt.plot.style import (
     new_figure,
     styled,
 )
-from beamopt.plot.workspace import draw_diagonal, draw_from_above, pressure_handles
-from beamopt.rod.arc import arc_centreline
+from beamopt.plot.workspace import draw_diagonal, draw_down, draw_from_above, pressure_handles
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -46,10 +45,11 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
     right = figure.add_subplot(133, projection="3d")
     sealed = design.seal.rules.sealed
     draw_section(left, design.section, "section", design.outline if sealed else None)
-    strains = design.response.strains(design.workspace.pressures)
-    lines = arc_centreline(strains, np.linspace(0, design.actuator.length, 41))
+    lines = design.climb.model.backbones(design.values, design.workspace.pressures)
     draw_from_above(middle, design.workspace, target, lines)
     draw_diagonal(right, design.workspace, target, lines)
+    if design.loads.weighs:
+        draw_down(right, -design.loads.mount[2], lines.reshape(-1, 3))
     middle.legend(handles=[*middle.get_legend_handles_labels()[0], *pressure_handles()], **BELOW)
     if title:
         figure.suptitle(title)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.plot.style import DESIGN_COLOUR, TARGET_COLOUR, pressure_colours
+from beamopt.plot.style import ASIDE_COLOUR, DESIGN_COLOUR, TARGET_COLOUR, pressure_colours
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["draw_diagonal", "draw_from_above", "pressure_handles"]
+__all__ = ["draw_diagonal", "draw_down", "draw_from_above", "pressure_handles"]
 
 
 def draw_from_above(
@@ -43,6 +43,15 @@ def draw_diagonal(
     axes.locator_params(nbins=4)
     axes.locator_params(axis="y", nbins=3)
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]", title="diagonal")
+
+
+def draw_down(axes: Any, down: FloatArray, near: FloatArray) -> None:
+    """Draw an arrow that points down in the room, (3,) in the base's axes, beside the points."""
+    low, high = near.min(axis=0), near.max(axis=0)
+    size = 0.25 * float(np.max(high - low))
+    start = np.array([low[0] - 0.3 * size, high[1], (low[2] + high[2]) / 2]) - down * size / 2
+    axes.quiver(*start, *(down * size), color=ASIDE_COLOUR, lw=1.6, arrow_length_ratio=0.25)
+    axes.text(*start, "down ", color=ASIDE_COLOUR, ha="right")
 
 
 def pressure_handles() -> list[Any]:

@@ -20,9 +20,11 @@ from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = [
     "GeometrySteps",
+    "LoadedDesignError",
     "Subject",
     "UnsealedDesignError",
     "check_sealed",
+    "check_unloaded",
     "geometry_steps",
     "sealed_copy",
     "slender_copy",
@@ -33,6 +35,10 @@ class UnsealedDesignError(ValueError):
     """A design whose chambers are open: no solid can be made of it."""
 
 
+class LoadedDesignError(ValueError):
+    """A design whose rod is not straight, uniform and under pressure alone."""
+
+
 @dataclass(frozen=True, eq=False)
 class Subject:
     """A design to be checked.
@@ -41,11 +47,18 @@ class Subject:
     design : as it is checked, sealed if it was asked for.
     sealing_moved : (27,) how far sealing a copy moved the beam's tips [mm]; None where the design
         was taken as it is.
+
+    Raises
+    ------
+    LoadedDesignError : loads, segments or a rest curvature, which the solid does not have.
     """
 
     name: str
     design: Design
     sealing_moved: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        check_unloaded(self.name, self.design)
 
     @property
     def outline(self) -> Outline:
@@ -158,4 +171,25 @@ def check_sealed(name: str, design: Design) -> None:
         raise UnsealedDesignError(
             f"{name} is not sealed: {opened[0]}; --seal 1.0 seals a copy by a skin of 1 mm and "
             "says how far that moves the tips"
+        )
+
+
+def check_unloaded(name: str, design: Design) -> None:
+    """Refuse a design whose beam is not an arc.
+
+    Raises
+    ------
+    LoadedDesignError : what it has that the solid does not.
+    """
+    model = design.loaded_rod
+    extras = {
+        "loads": model.loads.any,
+        "rod.segments": not model.is_uniform,
+        "rod.rest_curvature": bool(np.any(model.curvature)),
+    }
+    found = [key for key, there in extras.items() if there]
+    if found:
+        raise LoadedDesignError(
+            f"{name} has {', '.join(found)}: the solid is a straight actuator of one section under "
+            "pressure alone; take the keys out of a copy to check its section"
         )

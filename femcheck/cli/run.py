@@ -19,9 +19,11 @@ from femcheck.check.folder import CheckFolder
 from femcheck.check.options import CheckOptions
 from femcheck.check.run import check_design
 from femcheck.check.subject import (
+    LoadedDesignError,
     Subject,
     UnsealedDesignError,
     check_sealed,
+    check_unloaded,
     sealed_copy,
     slender_copy,
 )
@@ -123,6 +125,10 @@ def _subject(
     file: Path, name: str, design: Design, skin: float | None, slenderness: float | None
 ) -> Subject:
     """As it is to be checked: of the length that is asked for, and sealed."""
+    try:
+        check_unloaded(name, design)
+    except LoadedDesignError as error:
+        raise InputError(file, "", None, str(error)) from None
     if slenderness is not None:
         try:
             design = slender_copy(Subject(name, design), slenderness).design

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from beamopt.design import Actuator
+from beamopt.actuator import Actuator
 from beamopt.errors import InputError
 from femcheck.check.solid_options import SolidOptions
 from femcheck.material.catalogue import law_by_name

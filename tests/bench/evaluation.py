@@ -11,6 +11,7 @@ import numpy as np
 
 from beamopt.judge import Judge
 from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
+from beamopt.rod.ladder import RodModel
 from beamopt.rod.response import linear_response
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
@@ -30,7 +31,8 @@ COUNTS = (10, 20, 50, 100, 200, 500, 1000)
 
 def judge_for(grid: PolarGrid) -> Judge:
     respond = partial(linear_response, youngs_modulus=300.0)
-    return Judge(grid, 4, 100.0, respond, LEVELS, np.zeros((27, 3)), 1000.0)
+    rod = RodModel(100.0, 300.0, 100.0, respond)
+    return Judge(grid, 4, rod, LEVELS, np.zeros((27, 3)), 1000.0)
 
 
 def candidates(grid: PolarGrid, count: int, points: int = 100) -> list[FeaturePoints]:

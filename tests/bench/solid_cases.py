@@ -6,8 +6,10 @@ import time
 
 import numpy as np
 
+from beamopt.actuator import Actuator
 from beamopt.arrays import FloatArray
-from beamopt.design import Actuator, Design, DrawnChamber, Grid
+from beamopt.chambers import DrawnChamber
+from beamopt.design import Design, Grid
 from beamopt.seal import Seal
 from femcheck.continuation.direct import DirectSolver, direct_solver
 from femcheck.continuation.load_steps import LoadSteps

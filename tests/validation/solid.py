@@ -10,7 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.design import Actuator, Design, DrawnChamber, Grid
+from beamopt.actuator import Actuator
+from beamopt.chambers import DrawnChamber
+from beamopt.design import Design, Grid
 from beamopt.optimisation import optimize
 from beamopt.scene import load_scene
 from beamopt.seal import Seal

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from beamopt.design import Actuator
+from beamopt.actuator import Actuator
 from beamopt.errors import InputError
 from femcheck.material.fibre import Thread
 from femcheck.material.gent import Gent

@@ -1,0 +1,29 @@
+"""`beamopt rung`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from beamopt.cli.progress import console
+from beamopt.climb import Climb
+from beamopt.design import load_design
+from beamopt.rod.ladder import Rung
+from beamopt.scene import load_scene
+
+__all__ = ["rung_command"]
+
+
+def rung_command(subject: str, overrides: list[str]) -> None:
+    """Say which rung of the ladder a scene or a design needs, and why."""
+    climb = _climb(subject, overrides)
+    for rung in Rung:
+        mark = "→" if rung is climb.model.rung else " "
+        console.print(f"{mark} {rung.value:<8}{rung.text}", markup=False)
+    console.print(climb.reason, soft_wrap=True, markup=False)
+
+
+def _climb(subject: str, overrides: list[str]) -> Climb:
+    path = Path(subject)
+    if path.is_dir() or path.suffix == ".json":
+        return load_design(path / "best.json" if path.is_dir() else path).climb
+    return load_scene(subject, overrides).climb

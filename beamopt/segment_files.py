@@ -1,0 +1,23 @@
+"""Segments whose sections stand in design files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from beamopt.actuator import RodRules
+from beamopt.design import load_design
+from beamopt.model import read_json
+
+__all__ = ["with_sections"]
+
+
+def with_sections(rules: RodRules, folder: Path) -> RodRules:
+    """The rules with whole designs in place of their files' names: they stand on their own."""
+    segments = []
+    for one in rules.segments:
+        if one.file is not None:
+            load_design(folder / one.file)  # complains about the file by its name
+            section = read_json(folder / one.file)
+            one = one.model_copy(update={"file": None, "section": section})
+        segments.append(one)
+    return rules.model_copy(update={"segments": tuple(segments)})
