@@ -17,6 +17,7 @@ from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.result import Optimisation
+from beamopt.rod.ladder import Rung
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.target import Target, tips_csv
@@ -145,17 +146,29 @@ class RunFolder:
 def summary(result: Optimisation) -> dict[str, Any]:
     """How a search ended and what it found, without times."""
     pieces = result.best.section.pieces
-    return {
-        "status": result.status.value,
-        "scene": result.scene.name,
-        "seed": result.scene.search.seed,
-        "generations": result.history[-1].index,
-        "evaluations": result.evaluations,
-        "best": _summary_of(result.verdict)
-        | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
-        "final": _summary_of(result.history[-1].best.verdict),
-        "warnings": list(result.target.warnings),
-    } | _outline(result)
+    return (
+        {
+            "status": result.status.value,
+            "scene": result.scene.name,
+            "seed": result.scene.search.seed,
+            "generations": result.history[-1].index,
+            "evaluations": result.evaluations,
+            "best": _summary_of(result.verdict)
+            | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
+            "final": _summary_of(result.history[-1].best.verdict),
+            "warnings": list(result.target.warnings),
+        }
+        | _rod(result)
+        | _outline(result)
+    )
+
+
+def _rod(result: Optimisation) -> dict[str, Any]:
+    """How the rod is solved; nothing for the paper's arc."""
+    climb = result.scene.climb
+    if climb.model.rung is Rung.ARC:
+        return {}
+    return {"rod": {"rung": climb.model.rung.value, "reason": climb.reason}}
 
 
 def _outline(result: Optimisation) -> dict[str, Any]:
