@@ -58,6 +58,9 @@ class RodRules(Model):
     """
 
     rung: Literal["auto", "arc", "chain", "loaded"] = quantity("auto", "how it is solved")
+    method: Literal["modes", "elements"] = quantity(
+        "modes", "of the loaded rod: Legendre modes, or finite elements"
+    )
     tolerance: Number = quantity(
         0.001, "error of a tip that is near enough, as a share of the length", low=1e-9, high=0.1
     )
@@ -172,5 +175,6 @@ def rod_model(
         or (Piece(1.0),),
         loads=loads.loads,
         curvature=np.array(rules.rest_curvature),
+        method=rules.method,
         tolerance=rules.tolerance * actuator.length,
     )

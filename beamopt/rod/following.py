@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 
 from beamopt.arrays import FloatArray
 from beamopt.rod.balance import reaction_of
@@ -21,6 +20,7 @@ FIRST_STEP = 0.25
 SMALLEST_STEP = 2e-4  # of the full load
 LARGEST_JUMP = 0.5  # rad that the iteration may turn the tip by beyond what was predicted
 MOST_STEPS = 400
+SAME_STATE = 1e-4  # rad
 SOFT = 0.15  # of its stiffness at rest: a mode with less than this is critical
 AT_WORK = 0.02  # cosine between critical mode and the load's change: more than this is work
 
@@ -52,12 +52,15 @@ class Follower:
             unknowns[:] = predicted
             ended, count = self._iterate(after, unknowns)
             total += count
-            jump = largest_turn(self.at, unknowns - predicted, len(self.rod.free))
+            jump = largest_turn(self.rod, self.at, unknowns - predicted)
+            if ended == FOUND and now > 0.0 and not self._leads_back(unknowns, now, here):
+                ended = UNSTABLE  # it snapped: shallow arches hardly turn
             if ended == FOUND and jump < LARGEST_JUMP:
                 slope = (unknowns - here) / (after - now)
                 here[:], now = unknowns, after
                 step *= 2.0 if count <= 5 else 1.0
                 if now == 1.0:
+                    self._residual(now, unknowns)  # the shape of the last one
                     return RodStatus.CONVERGED, 1.0, total
             else:
                 beyond = ended
@@ -71,42 +74,54 @@ class Follower:
         held = (self.rod, self.at, self.rest, self.start, self.turn, self.conservative)
         return newton(*held, False, CLOSE, factor, unknowns, self.shape)
 
+    def _leads_back(self, unknowns: FloatArray, before: float, there: FloatArray) -> bool:
+        """Whether the iteration from a state finds the equilibrium at the load before it."""
+        back = unknowns.copy()
+        ended, _ = self._iterate(before, back)
+        turned = largest_turn(self.rod, self.at, back - there)
+        return ended == FOUND and turned < SAME_STATE
+
     def _why(self, now: float, unknowns: FloatArray, unstable_beyond: bool) -> RodStatus:
-        """What stopped the load: at a limit point the mode that softens does work with the load."""
-        more, residual = (
-            self._residual(now + SMALLEST_STEP, unknowns),
-            self._residual(now, unknowns),
-        )
+        """What stopped the load: at a limit point the mode that softens does work with the load.
+
+        The softest mode is that in which a given moment bends most: the largest singular value of
+        Lᵀ (T⁻¹) L, where T is the tangent, with its multipliers, and L Lᵀ the stiffness at rest.
+        """
+        self._residual(min(1.0, now + 2 * SMALLEST_STEP), unknowns)
         if not self.shape.stretch.min() > 0.0:
             return RodStatus.CRUSHED
-        tangent = np.empty((unknowns.size, unknowns.size))
-        reaction = reaction_of(self.rod, self.at, unknowns)
-        tangent_into(self.rod, self.at, self.shape, now, reaction, tangent)
+        work = self._residual(now + SMALLEST_STEP, unknowns) - self._residual(now, unknowns)
+        tangent = self._tangent(now, unknowns)
         if not np.isfinite(tangent).all():
             return RodStatus.DIVERGED
-        moving = self._moving(tangent)
-        held = moving.T @ (tangent + tangent.T)[: len(moving), : len(moving)] @ moving / 2
-        self._residual(0.0, np.zeros_like(unknowns))
-        tangent_into(self.rod, self.at, self.shape, 0.0, np.zeros(6), tangent)
-        at_rest = moving.T @ (tangent + tangent.T)[: len(moving), : len(moving)] @ moving / 2
-        values, modes = scipy.linalg.eigh(held, at_rest)
-        softest = int(np.argmin(np.abs(values)))
-        if abs(values[softest]) > SOFT:
+        root = self._root_of_stiffness(unknowns.size)
+        moving = len(root)
+        inverse = np.linalg.pinv(tangent, rcond=1e-15)[:moving, :moving]
+        _, sizes, modes = np.linalg.svd(root.T @ inverse @ root)
+        if sizes[0] * SOFT < 1:
             return RodStatus.STEPS_TOO_SMALL
-        work, mode = moving.T @ (more - residual)[: len(moving)], modes[:, softest]
-        size = float(np.linalg.norm(work) * np.linalg.norm(mode))
-        cosine = abs(mode @ work) / max(size, 1e-300)
-        if cosine > AT_WORK:
+        works = np.linalg.solve(root, work[:moving])
+        if abs(modes[0] @ works) > AT_WORK * np.linalg.norm(works):
             return RodStatus.LIMIT_POINT
         return RodStatus.BUCKLED if unstable_beyond else RodStatus.STEPS_TOO_SMALL
 
-    def _moving(self, tangent: FloatArray) -> FloatArray:
-        """(k, k − held) what amplitudes and hinge can do while the tip is held, in columns."""
-        held = 3 * (len(self.rod.held_position) + len(self.rod.held_rotation))
-        free = len(tangent) - held
-        if not held:
-            return np.eye(free)
-        return np.asarray(scipy.linalg.null_space(tangent[free:, :free]))
+    def _root_of_stiffness(self, size: int) -> FloatArray:
+        """L, lower, of the stiffness L Lᵀ at rest; a hinge gets that of the rod's own bending."""
+        modes = self.at.basis.shape[1] * len(self.rod.free)
+        moving = modes + len(self.rod.hinge)
+        self._residual(0.0, np.zeros(size))
+        tangent = self._tangent(0.0, np.zeros(size))[:moving, :moving]
+        bending = np.abs(self.rod.bending[:, self.rod.free, self.rod.free]).max()
+        tangent[modes:], tangent[:, modes:] = 0.0, 0.0
+        tangent[range(modes, moving), range(modes, moving)] = bending / self.at.step.sum()
+        return np.asarray(np.linalg.cholesky((tangent + tangent.T) / 2))
+
+    def _tangent(self, factor: float, unknowns: FloatArray) -> FloatArray:
+        """(n, n) at the shape of the last residual."""
+        out = np.empty((unknowns.size, unknowns.size))
+        reaction = reaction_of(self.rod, self.at, unknowns)
+        tangent_into(self.rod, self.at, self.shape, factor, reaction, out)
+        return out
 
     def _residual(self, factor: float, unknowns: FloatArray) -> FloatArray:
         out = np.empty(unknowns.size)

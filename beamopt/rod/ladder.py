@@ -12,7 +12,7 @@ import numpy as np
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.rod.arc import arc_centreline, arc_tips
 from beamopt.rod.chain import chain_centrelines, chain_tips
-from beamopt.rod.equilibrium import solve_rod
+from beamopt.rod.equilibrium import MethodName, solve_rod
 from beamopt.rod.law import cross, section_law
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.response import Response
@@ -105,7 +105,7 @@ class RodModel:
     response_of : what makes a response of a section's moments.
     pieces : from the base to the tip; shares add to 1.
     curvature : (3,) u at rest without pressure, in the base's axes: a pre-curved actuator [1/mm].
-    rung : how it is solved. tolerance : of a tip under loads [mm].
+    rung : how it is solved. method : see `solve_rod`. tolerance : of a tip under loads [mm].
     twists : whether sections twist and shear after Saint-Venant; else they do not twist, κ = 1.
 
     The rod's axis goes through the material centroid of the base's section; where other sections
@@ -120,6 +120,7 @@ class RodModel:
     loads: Loads = field(default_factory=Loads)
     curvature: FloatArray = field(default_factory=lambda: np.zeros(3))
     rung: Rung = Rung.ARC
+    method: MethodName = "modes"
     tolerance: float = 0.1
     twists: bool = False
 
@@ -169,7 +170,9 @@ class RodModel:
         if self.rung is Rung.CHAIN:
             position, rotation = chain_tips(rod, rest)
             return _all_found(position + rotation @ beside)
-        found = solve_rod(rod, rest, self.tolerance, parents, all_or_none=all_or_none)
+        found = solve_rod(
+            rod, rest, self.tolerance, parents, all_or_none=all_or_none, method=self.method
+        )
         return Tips(found.tips + found.rotations @ beside, found.status)
 
     def arcs(self, moments: Moments, pressures: FloatArray) -> FloatArray:

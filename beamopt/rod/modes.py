@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -21,6 +22,8 @@ from beamopt.rod.status import RodStatus
 
 __all__ = ["StrainModes"]
 
+COILED, MOST_COILED = 2.5, 200.0  # rad of a segment at rest: from where, and how far, points follow
+
 
 @dataclass(frozen=True)
 class StrainModes:
@@ -34,8 +37,8 @@ class StrainModes:
     parents : (n, 3) cases a, b, c earlier in the row: a + b − c is where a case begins, −1 for
         "from rest"; None begins all from rest.
     all_or_none : after a case that fails the later ones that are not found directly are SKIPPED.
-    direct : iterate at full load first, and follow the load only where that leads out of the well
-        that it began in; False follows always.
+    direct : iterate at full load first, unless the tip is held, and follow the load only where that
+        leads out of the well that it began in; False follows always.
     close : rad that the last step of the iteration at full load may turn a section by. What is left
         then is its square.
     """
@@ -58,7 +61,11 @@ class _Cases:
 
     def __init__(self, rod: Rod, rest: FloatArray, modes: int) -> None:
         self.arrays, self.rest = pack(rod), rest
-        self.at = stations_of(tuple(one.length for one in rod.segments), modes)
+        lengths = np.array([one.length for one in rod.segments])
+        coiled = float(np.max(np.linalg.norm(rest[:, :, :3], axis=-1) * lengths, initial=0.0))
+        # R turns with the curvature: a point more for every radian or two of a coiled rest shape
+        more = math.ceil(0.7 * max(coiled - COILED, 0.0)) if coiled < MOST_COILED else 0
+        self.at = stations_of(tuple(lengths.tolist()), modes, more)
         self.conservative = rod.is_conservative
         segments = len(rod.segments)
         self.shape = empty_shape(len(self.at.at), segments, len(self.at.step))
@@ -84,7 +91,7 @@ class _Cases:
         values, centrelines = np.full((n, 14), np.nan), np.full((n, len(at.at), 3), np.nan)
         unknowns = np.zeros((n, unknown_count(rod, at)))
         begin = np.full((n, 3), -1, dtype=np.int64) if how.parents is None else how.parents
-        if how.direct:
+        if how.direct and not self.held:  # shallow arches snap without turning much
             self._directly(how.close, begin, unknowns, ended, iterations, values, centrelines)
         else:
             ended[:] = DIVERGED

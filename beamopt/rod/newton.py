@@ -28,6 +28,7 @@ FOUND, UNSTABLE, DIVERGED = 0, 1, 2
 
 MOST_ITERATIONS = 20
 LARGEST_TURN = 1.0  # rad that a step of the iteration may turn any section by, about
+SINGULAR = 1e-14  # of a row: a pivot that is smaller is none
 CLOSE = 1e-6  # rad: a step smaller than this is the last one; convergence is quadratic
 
 
@@ -81,6 +82,8 @@ def newton(
 ) -> tuple[int, int]:
     """Iterate from `unknowns`, in place, to an equilibrium; how it ended and after how many.
 
+    An equilibrium in which the rod is compressed to nothing (v3 ≤ 0) counts as unstable.
+
     wary : give up where an iterate's tangent shows that the way led out of the well it began in.
     close : rad, the last step is smaller.
     """
@@ -98,27 +101,30 @@ def newton(
         step = solved(tangent, residual)
         if not np.isfinite(step).all():
             return DIVERGED, iteration
-        turned = largest_turn(at, step, rod.free.shape[0])
+        turned = largest_turn(rod, at, step)
         share = min(1.0, LARGEST_TURN / turned) if turned > 0 else 1.0
         for k in range(size):
             unknowns[k] -= share * step[k]
         evaluate(rod, at, rest, start, turn, factor, unknowns, shape, residual)
         if share == 1.0 and turned < close:
-            return (FOUND if stable else UNSTABLE), iteration
+            whole = np.min(shape.stretch) > 0.0
+            return (FOUND if stable and whole else UNSTABLE), iteration
     return DIVERGED, MOST_ITERATIONS
 
 
 @compiled
-def largest_turn(at: Stations, step: FloatArray, free: int) -> float:
-    """A bound of the angle [rad] that a change of the modes turns the tip by."""
-    total = 0.0
-    length = 0.0
+def largest_turn(rod: RodArrays, at: Stations, step: FloatArray) -> float:
+    """A bound of the angle [rad] that a change of the unknowns turns any section by, about."""
+    free, modes = rod.free.shape[0], at.basis.shape[1]
+    total, length = 0.0, 0.0
     for h in at.step:
         length += h
-    for b in range(at.basis.shape[1]):
-        for a in range(free):
-            total = max(total, abs(step[b * free + a]))
-    return total * length
+    for k in range(modes * free):
+        total = max(total, abs(step[k]))
+    total *= length
+    for k in range(rod.hinge.shape[0]):
+        total = max(total, abs(step[modes * free + k]))
+    return total
 
 
 @compiled
@@ -157,7 +163,9 @@ def negative_pivots(matrix: FloatArray) -> int:
     a = 0.5 * (matrix + matrix.T)
     negative = 0
     for k in range(size):
-        pivot = a[k, k]
+        pivot, least = a[k, k], SINGULAR * np.max(np.abs(matrix[k]))
+        if abs(pivot) < least:
+            pivot = least  # of a mechanism that something held further down stops
         if not pivot > 0.0:
             negative += 1
         for i in range(k + 1, size):

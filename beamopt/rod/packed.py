@@ -101,9 +101,9 @@ def _give(rod: Rod) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def stations_of(lengths: tuple[float, ...], modes: int) -> Stations:
-    """Stations for `modes` Legendre polynomials a segment, on modes + 3 Gauss points each."""
-    count, parts = modes + 3, len(lengths)
+def stations_of(lengths: tuple[float, ...], modes: int, more: int = 0) -> Stations:
+    """Stations for `modes` Legendre polynomials a segment, on modes + 3 + more Gauss points."""
+    count, parts = modes + 3 + more, len(lengths)
     x, w = legendre.leggauss(count)
     x, w = (x + 1) / 2, w / 2  # on [0, 1]
     cuts = np.array([0.0, *x, 1.0])

@@ -136,8 +136,10 @@ class _System:
         return np.asarray(out * self.scale[:, None] * self.scale)
 
     def by_load(self, scaled: FloatArray, factor: float) -> FloatArray:
-        """(n,) derivative by the factor: the residual is linear in it."""
-        return self.residual(scaled, factor + 1.0) - self.residual(scaled, factor)
+        """(n,) derivative by the factor, in which the residual is quadratic; the shape is at it."""
+        above, below = self.residual(scaled, factor + 1.0), self.residual(scaled, factor - 1.0)
+        self.residual(scaled, factor)
+        return (above - below) / 2
 
     def direction(self, scaled: FloatArray, factor: float, before: FloatArray | None) -> FloatArray:
         """(n + 1,) unit tangent of the path, onwards."""
@@ -157,7 +159,7 @@ class _System:
         for count in range(1, MOST_ITERATIONS + 1):
             residual = self.residual(now[:-1], now[-1])
             tangent = self.tangent(now[:-1], now[-1])
-            load = self.by_load(now[:-1], now[-1])
+            load = self.by_load(now[:-1], float(now[-1]))
             bordered = np.vstack([np.column_stack([tangent, load]), direction])
             missing = np.append(residual, direction @ (now - start) - length)
             try:

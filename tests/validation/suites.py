@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.validation import arc, genotypes, material, published_solids, resume, solid, symmetry
+from tests.validation import (
+    arc,
+    genotypes,
+    material,
+    published_solids,
+    resume,
+    rods,
+    solid,
+    symmetry,
+)
 from tests.validation.check import Check
 
 __all__ = ["SUITES"]
@@ -17,4 +26,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "solid": solid.checks,
     "material": material.checks,
     "published-solids": published_solids.checks,
+    "rods": rods.checks,
 }

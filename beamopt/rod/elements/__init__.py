@@ -1,0 +1,1 @@
+"""Geometrically exact finite elements on SE(3), at a minimum of the potential energy."""
