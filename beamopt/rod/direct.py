@@ -7,7 +7,7 @@ import numpy as np
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.compiled import compiled
 from beamopt.rod.balance import reaction_of
-from beamopt.rod.newton import FOUND, newton, solved
+from beamopt.rod.newton import DIVERGED, FOUND, newton, solved
 from beamopt.rod.packed import RodArrays, Stations
 from beamopt.rod.rotation import local
 from beamopt.rod.shape import Shape, curvatures_into, shape_into
@@ -24,7 +24,6 @@ def solve_directly(
     turns: FloatArray,
     parents: IndexArray,
     conservative: bool,
-    guessed: bool,
     close: float,
     unknowns: FloatArray,
     ended: IndexArray,
@@ -38,19 +37,21 @@ def solve_directly(
     starts, turns : (n, 3) see `newton.evaluate`; zero where the tip is free.
     parents : (n, 3) cases a, b, c whose a + b − c begins a case (−1: from rest).
     close : see `newton.newton`.
-    unknowns : (n, k) what was found, and what to begin with where `guessed`.
+    unknowns : (n, k) what was found.
     ended, iterations : (n,) see `newton.newton`; the way out of a well counts as not found.
     values, centrelines : (n, 14), (n, M, 3) see `read_case`.
     """
     for case in range(rests.shape[0]):
         a, b, c = parents[case, 0], parents[case, 1], parents[case, 2]
+        ended[case] = DIVERGED
+        if a >= 0 and ended[a] != FOUND:
+            continue  # from rest it would not go better than its parent
         y = unknowns[case]
-        if not guessed:
-            y[:] = 0.0
-            if a >= 0 and ended[a] == FOUND:
-                y[:] = unknowns[a]
-                if b >= 0 and c >= 0 and ended[b] == FOUND and ended[c] == FOUND:
-                    y += unknowns[b] - unknowns[c]
+        y[:] = 0.0
+        if a >= 0:
+            y[:] = unknowns[a]
+            if b >= 0 and c >= 0 and ended[b] == FOUND and ended[c] == FOUND:
+                y += unknowns[b] - unknowns[c]
         rest, start, turn = rests[case], starts[case], turns[case]
         ended[case], iterations[case] = newton(
             rod, at, rest, start, turn, conservative, True, close, 1.0, y, shape

@@ -12,7 +12,7 @@ from beamopt.arrays import FloatArray, IndexArray
 from beamopt.rod.balance import unknown_count
 from beamopt.rod.direct import read_case, solve_directly
 from beamopt.rod.following import Follower
-from beamopt.rod.newton import CLOSE, DIVERGED, FOUND, evaluate
+from beamopt.rod.newton import CLOSE, DIVERGED, FOUND, evaluate, newton
 from beamopt.rod.packed import pack, stations_of
 from beamopt.rod.rod import Rod
 from beamopt.rod.rotation import rotation_vector
@@ -57,7 +57,7 @@ class StrainModes:
 
 
 class _Cases:
-    """One rod in n cases, with `modes` a segment."""
+    """One rod in n cases, with `modes` a segment, and what is found of each."""
 
     def __init__(self, rod: Rod, rest: FloatArray, modes: int) -> None:
         self.arrays, self.rest = pack(rod), rest
@@ -67,10 +67,14 @@ class _Cases:
         more = math.ceil(0.7 * max(coiled - COILED, 0.0)) if coiled < MOST_COILED else 0
         self.at = stations_of(tuple(lengths.tolist()), modes, more)
         self.conservative = rod.is_conservative
-        segments = len(rod.segments)
-        self.shape = empty_shape(len(self.at.at), segments, len(self.at.step))
-        n = len(rest)
+        n, points = len(rest), len(self.at.at)
+        self.shape = empty_shape(points, len(rod.segments), len(self.at.step))
         self.starts, self.turns = np.zeros((n, 3)), np.zeros((n, 3))
+        self.unknowns = np.zeros((n, unknown_count(self.arrays, self.at)))
+        self.ended = np.full(n, DIVERGED, dtype=np.int64)
+        self.iterations, self.factor = np.zeros(n, dtype=np.int64), np.ones(n)
+        self.status = [RodStatus.CONVERGED] * n
+        self.values, self.centrelines = np.full((n, 14), np.nan), np.full((n, points, 3), np.nan)
         self.held = rod.tip.position is not None or rod.tip.rotation is not None
         if self.held:
             for case in range(n):
@@ -86,56 +90,63 @@ class _Cases:
 
     def solve(self, how: StrainModes) -> RodSolution:
         """Directly where that is safe, else following the load."""
-        rod, at, n = self.arrays, self.at, len(self.rest)
-        ended, iterations = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        values, centrelines = np.full((n, 14), np.nan), np.full((n, len(at.at), 3), np.nan)
-        unknowns = np.zeros((n, unknown_count(rod, at)))
+        n = len(self.rest)
         begin = np.full((n, 3), -1, dtype=np.int64) if how.parents is None else how.parents
-        if how.direct and not self.held:  # shallow arches snap without turning much
-            self._directly(how.close, begin, unknowns, ended, iterations, values, centrelines)
-        else:
-            ended[:] = DIVERGED
-        status, factor = [RodStatus.CONVERGED] * n, np.ones(n)
+        direct = how.direct and not self.held  # shallow arches snap without turning much
+        if direct:
+            solve_directly(
+                self.arrays, self.at, self.rest, self.starts, self.turns, begin,
+                self.conservative, how.close, self.unknowns, self.ended, self.iterations,
+                self.values, self.centrelines, self.shape,
+            )  # fmt: skip
         fails = False
-        for case in np.flatnonzero(ended != FOUND).tolist():
+        for case in np.flatnonzero(self.ended != FOUND).tolist():
             if fails:
-                status[case] = RodStatus.SKIPPED
+                self.status[case] = RodStatus.SKIPPED
                 continue
-            status[case], factor[case], count = self._followed(
-                case, unknowns[case], values[case], centrelines[case]
-            )
-            iterations[case] += count
-            fails = how.all_or_none and status[case] is not RodStatus.CONVERGED
-        for case in np.flatnonzero(~(values[:, 12] > 0.0)).tolist():
-            if status[case] is RodStatus.CONVERGED:
-                status[case] = RodStatus.CRUSHED
-                values[case], centrelines[case] = np.nan, np.nan
-        tips, rotations, error = values[:, :3], values[:, 3:12].reshape(n, 3, 3), values[:, 13]
+            if not (direct and self._beside(case, begin[case], how.close)):
+                self._follow(case)
+            fails = how.all_or_none and self.status[case] is not RodStatus.CONVERGED
         return RodSolution(
-            tuple(status), tips, rotations, factor, error, iterations, at.at, centrelines
+            tuple(self.status),
+            self.values[:, :3],
+            self.values[:, 3:12].reshape(n, 3, 3),
+            self.factor,
+            self.values[:, 13],
+            self.iterations,
+            self.at.at,
+            self.centrelines,
         )
 
-    def _directly(
-        self,
-        close: float,
-        begin: IndexArray,
-        unknowns: FloatArray,
-        ended: IndexArray,
-        iterations: IndexArray,
-        values: FloatArray,
-        centrelines: FloatArray,
-    ) -> None:
-        solve_directly(
-            self.arrays, self.at, self.rest, self.starts, self.turns, begin, self.conservative,
-            False, close, unknowns, ended, iterations, values, centrelines, self.shape,
-        )  # fmt: skip
+    def _beside(self, case: int, parents: IndexArray, close: float) -> bool:
+        """Iterate from parents that had to be followed; whether that arrives."""
+        a, b, c = parents.tolist()
+        if a < 0 or self.ended[a] != FOUND:
+            return False
+        unknowns = self.unknowns[case]
+        unknowns[:] = self.unknowns[a]
+        if b >= 0 and c >= 0 and self.ended[b] == FOUND and self.ended[c] == FOUND:
+            unknowns += self.unknowns[b] - self.unknowns[c]
+        one = (self.arrays, self.at, self.rest[case], self.starts[case], self.turns[case])
+        ended, count = newton(*one, self.conservative, True, close, 1.0, unknowns, self.shape)
+        self.iterations[case] += count
+        if ended == FOUND:
+            self._read(case)
+        return bool(ended == FOUND)
 
-    def _followed(
-        self, case: int, unknowns: FloatArray, values: FloatArray, centreline: FloatArray
-    ) -> tuple[RodStatus, float, int]:
-        rest, shape = self.rest[case], self.shape
-        one = (self.arrays, self.at, rest, self.starts[case], self.turns[case])
-        status, factor, count = Follower(*one, self.conservative, shape).follow(unknowns)
-        if status is RodStatus.CONVERGED:
-            read_case(self.arrays, self.at, rest, unknowns, shape, values, centreline)
-        return status, factor, count
+    def _follow(self, case: int) -> None:
+        """Let the load grow from nothing."""
+        one = (self.arrays, self.at, self.rest[case], self.starts[case], self.turns[case])
+        follower = Follower(*one, self.conservative, self.shape)
+        found = follower.follow(self.unknowns[case])
+        self.status[case], self.factor[case] = found[:2]
+        self.iterations[case] += found[2]
+        if self.status[case] is RodStatus.CONVERGED:
+            self._read(case)
+
+    def _read(self, case: int) -> None:
+        """Keep the shape as it stands."""
+        self.ended[case] = FOUND
+        rest, unknowns = self.rest[case], self.unknowns[case]
+        out = self.values[case], self.centrelines[case]
+        read_case(self.arrays, self.at, rest, unknowns, self.shape, *out)

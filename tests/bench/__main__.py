@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import sys
 
-from tests.bench import evaluation, solid, study
+from tests.bench import evaluation, rods, solid, study
 from tests.bench.measured import report
 
-BENCHES = {"evaluation": evaluation.measure, "study": study.measure, "solid": solid.measure}
+BENCHES = {
+    "evaluation": evaluation.measure,
+    "study": study.measure,
+    "solid": solid.measure,
+    "rods": rods.measure,
+}
 
 
 def main() -> int:
