@@ -11,8 +11,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from beamopt.arrays import FloatArray
+from beamopt.errors import InputError
 from beamopt.model import Model, Number, quantity
 from beamopt.rod.ladder import Loads, Piece, RodModel, Rung, SectionValues
+from beamopt.rod.law import poissons_ratio
 from beamopt.rod.response import linear_response
 from beamopt.rod.rod import LineLoad, PointLoad
 
@@ -41,7 +43,7 @@ class SegmentChoice(Model):
     turned: Number = quantity(
         0.0, "angle of its section about the axis", unit="degrees", low=-360, high=360
     )
-    file: str | None = quantity(None, "design file of its section, relative to this scene")
+    file: str | None = quantity(None, "design file whose section it has, relative to this one")
     section: dict[str, Any] | None = quantity(None, "a whole design, instead of a file")
 
     @model_validator(mode="after")
@@ -71,13 +73,15 @@ class RodRules(Model):
         (0.0, 0.0, 0.0), "of a pre-curved actuator, about the section's x and y, and twist",
         unit="1/mm",
     )  # fmt: skip
-    segments: tuple[SegmentChoice, ...] = quantity((), "pieces from the base on; () is one")
+    segments: tuple[SegmentChoice, ...] = quantity(
+        (), 'pieces from the base on, as {share = 0.5, turned = 0.0, file = "a.json"}; [] is one'
+    )
 
     @model_validator(mode="after")
     def _is_whole(self) -> RodRules:
         total = sum(one.share for one in self.segments)
         if self.segments and abs(total - 1) > 1e-9:
-            raise ValueError(f"the shares of rod.segments add to {total:g}: must be 1")
+            raise ValueError(f"the shares of rod.segments add to {total:.9g}: must be 1")
         if self.segments and all(one.file or one.section for one in self.segments):
             raise ValueError("rod.segments: at least one without a file, to be searched")
         return self
@@ -153,12 +157,20 @@ def rod_model(
     actuator: Actuator,
     rules: RodRules,
     loads: Loading,
-    values_of: Callable[[dict[str, Any]], SectionValues],
+    values_of: Callable[[dict[str, Any], float], SectionValues],
 ) -> RodModel:
     """The rod of an actuator but for its section; `climb` puts it on its rung.
 
-    values_of : what makes values of a section that is given as a whole design.
+    values_of : what makes values of a section that is given as a whole design, and of ν.
+
+    Raises
+    ------
+    InputError : a segment whose file was not read.
     """
+    for one in rules.segments:
+        if one.file is not None:
+            raise InputError("", "rod.segments", one.file, "read by load_scene and load_design")
+    nu = poissons_ratio(actuator.youngs_modulus, actuator.shear_modulus)
     return RodModel(
         length=actuator.length,
         youngs_modulus=actuator.youngs_modulus,
@@ -168,7 +180,7 @@ def rod_model(
             Piece(
                 one.share,
                 math.radians(one.turned),
-                None if one.section is None else values_of(one.section),
+                None if one.section is None else values_of(one.section, nu),
             )
             for one in rules.segments
         )

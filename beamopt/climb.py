@@ -39,25 +39,18 @@ def climb(
     samples : makes sections to try the rungs on; called only where that is needed.
     """
     exact = model.lowest_rung
-    if rules.rung != "auto":
-        rung = RUNGS[rules.rung]
-        model = replace(model, rung=rung, twists=rules.twist == "saint-venant")
-        reason = "asked for" if rung is not Rung.LOADED else "asked for" + _stiffness(model)
-        return Climb(model, reason + _left_out(rung, exact))
+    asked = None if rules.rung == "auto" else RUNGS[rules.rung]
+    if asked is Rung.LOADED and exact is Rung.LOADED:
+        full, twist = _twisting(model, rules, levels, samples())
+        return Climb(full, f"asked for{twist}")
+    if asked is not None:
+        neglects = list(Rung).index(asked) < list(Rung).index(exact)
+        left_out = f"; {exact.value} would be exact" if neglects else ""
+        return Climb(replace(model, rung=asked, twists=False), f"asked for{left_out}")
     if exact is not Rung.LOADED:
         what = "uniform section" if exact is Rung.ARC else "sections or rest shape vary"
         return Climb(replace(model, rung=exact, twists=False), f"no loads, {what}: exact")
     return _tried(model, rules, levels, samples())
-
-
-def _left_out(rung: Rung, exact: Rung) -> str:
-    order = list(Rung)
-    lower = order.index(rung) < order.index(exact)
-    return f"; {exact.value} would be exact" if lower else ""
-
-
-def _stiffness(model: RodModel) -> str:
-    return ", with twist and shear after Saint-Venant" if model.twists else ", without twist"
 
 
 def _tried(
@@ -66,32 +59,57 @@ def _tried(
     levels: tuple[float, float, float],
     samples: Sequence[SectionValues],
 ) -> Climb:
-    """Try the rungs on sample sections; a sample without equilibrium needs the loads."""
-    pressures, allowed = pressure_grid(levels), model.tolerance
-    full = replace(model, rung=Rung.LOADED, twists=rules.twist != "stiff")
-    known = [full.tips(one, pressures, parents_on_grid()).positions for one in samples]
+    """Try the lower rung on sample sections; one without equilibrium needs the loads."""
+    full, twist = _twisting(model, rules, levels, samples)
+    pressures = pressure_grid(levels)
     unloaded = replace(model, loads=type(model.loads)())
     below = replace(unloaded, rung=unloaded.lowest_rung, twists=False)
-    moved = _largest(known, [below.tips(one, pressures).positions for one in samples])
-    count = f"{len(samples)} sample section{'s' if len(samples) > 1 else ''}"
-    if moved <= allowed:
-        reason = f"the loads move the tips of {count} by at most {moved:.2g} mm"
+    away = [
+        np.linalg.norm(
+            full.tips(one, pressures, parents_on_grid(), all_or_none=True).positions
+            - below.tips(one, pressures).positions,
+            axis=1,
+        )
+        for one in samples
+    ]
+    moved, lost = _summed_up(away)
+    count = f"{len(samples)} sample section{'' if len(samples) == 1 else 's'}"
+    said = f"the loads move the tips of {count} by"
+    allowed = f"(tolerance {model.tolerance:.2g} mm)"
+    if samples and not lost and moved <= model.tolerance:
         kept = replace(below, loads=model.loads)  # which a lower rung does not look at
-        return Climb(kept, f"{reason} (tolerance {allowed:.2g} mm)")
-    far = f"by up to {moved:.3g} mm" if np.isfinite(moved) else "away from any equilibrium"
-    reason = f"the loads move the tips of {count} {far}"
-    if rules.twist == "auto":
-        stiff = replace(full, twists=False)
-        tips = [stiff.tips(one, pressures, parents_on_grid()).positions for one in samples]
-        twisted = _largest(known, tips)
-        if twisted <= allowed:
-            full = stiff
-        if np.isfinite(twisted):
-            reason += f", finite twist and shear by {twisted:.2g} mm"
-    return Climb(full, f"{reason} (tolerance {allowed:.2g} mm){_stiffness(full)}")
+        return Climb(kept, f"{said} at most {moved:.2g} mm {allowed}")
+    without = "; some have no equilibrium under them" if lost else ""
+    return Climb(full, f"{said} up to {moved:.3g} mm {allowed}{without}{twist}")
 
 
-def _largest(some: Sequence[FloatArray], others: Sequence[FloatArray]) -> float:
-    """Largest distance of tips [mm]; infinite where one has none."""
-    distances = [np.linalg.norm(a - b, axis=-1) for a, b in zip(some, others, strict=True)]
-    return float(np.max(np.nan_to_num(distances, nan=np.inf)))
+def _twisting(
+    model: RodModel,
+    rules: RodRules,
+    levels: tuple[float, float, float],
+    samples: Sequence[SectionValues],
+) -> tuple[RodModel, str]:
+    """The loaded model with twist and shear or without, and why."""
+    full = replace(model, rung=Rung.LOADED, twists=rules.twist != "stiff")
+    if rules.twist != "auto":
+        return full, ", with twist and shear" if full.twists else ", without twist"
+    pressures, stiff = pressure_grid(levels), replace(full, twists=False)
+    away = [
+        np.linalg.norm(
+            full.tips(one, pressures, parents_on_grid(), all_or_none=True).positions
+            - stiff.tips(one, pressures, parents_on_grid(), all_or_none=True).positions,
+            axis=1,
+        )
+        for one in samples
+    ]
+    moved, lost = _summed_up(away)
+    if samples and not lost and moved <= model.tolerance:
+        return stiff, f"; twist and shear would move them by {moved:.2g} mm"
+    return full, f"; twist and shear move them by up to {moved:.2g} mm"
+
+
+def _summed_up(away: Sequence[FloatArray]) -> tuple[float, int]:
+    """Largest distance [mm] of tips that are there, and how many are not."""
+    distances = np.array(away)
+    there = np.isfinite(distances)
+    return float(distances[there].max(initial=0.0)), int((~there).sum())

@@ -200,7 +200,8 @@ class Design(Model):
     @cached_property
     def values(self) -> SectionValues:
         """What the rod needs to know of the section."""
-        if not self.loaded_rod.loads.any or self.rod.twist == "stiff":
+        stiff = "stiff" if self.rod.rung in ("arc", "chain") else ""
+        if not self.loaded_rod.loads.any or "stiff" in (self.rod.twist, stiff):
             return SectionValues(self.moments)
         grid, labels = self.section.grid, self.section.labels
         known = section_saint_venant(grid, labels, self.loaded_rod.poissons_ratio)
@@ -219,7 +220,8 @@ class Design(Model):
     def workspace_at(self, levels: tuple[float, float, float]) -> Workspace:
         """The 27 tips at other levels [kPa]; see `workspace`."""
         pressures = pressure_grid(levels)
-        tips = self.climb.model.tips(self.values, pressures, parents_on_grid())
+        # as a search judges it: no more is tried where one of them has no equilibrium
+        tips = self.climb.model.tips(self.values, pressures, parents_on_grid(), all_or_none=True)
         return Workspace(levels, _found(tips, pressures))
 
     def tips(self, pressures: FloatArray) -> FloatArray:
@@ -271,18 +273,22 @@ def load_design(path: str | Path) -> Design:
     schema = data.get("schema")
     if schema != SCHEMA:
         raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
+    from beamopt.segment_files import with_sections
+
     design = parse(Design, data, file)
+    rules = with_sections(design.rod, file.parent)
+    if rules != design.rod:
+        design = design.model_copy(update={"rod": rules})
     if not design.moments.is_stiff:
         raise InputError(file, "", None, "the section has no material, or too little to bend")
     return design
 
 
-def section_values(data: dict[str, Any]) -> SectionValues:
+def section_values(data: dict[str, Any], poissons_ratio: float) -> SectionValues:
     """What the rod needs to know of the section of a whole design, given as its file's content."""
     design = parse(Design, data, "rod.segments")
-    section = design.section
-    nu = design.loaded_rod.poissons_ratio
-    return SectionValues(design.moments, section_saint_venant(section.grid, section.labels, nu))
+    grid, labels = design.section.grid, design.section.labels
+    return SectionValues(design.moments, section_saint_venant(grid, labels, poissons_ratio))
 
 
 def _found(tips: Tips, pressures: FloatArray) -> FloatArray:

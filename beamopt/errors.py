@@ -45,5 +45,8 @@ class NoEquilibriumError(ValueError):
 
     def __init__(self, pressures: Sequence[float], status: Enum) -> None:
         self.pressures, self.status = tuple(float(one) for one in pressures), status
+        super().__init__(self.pressures, status)
+
+    def __str__(self) -> str:
         at = ", ".join(f"{one:g}" for one in self.pressures)
-        super().__init__(f"no tip at {at} kPa: {status.value}")
+        return f"no tip at {at} kPa: {self.status.value}"

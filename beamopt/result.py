@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from beamopt.design import Design
 from beamopt.errors import NoEquilibriumError
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Verdict
+from beamopt.rod.ladder import Rung
+from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.scene import Scene
 from beamopt.target import Target
-from beamopt.workspace import NODES, loss, rms_distance
+from beamopt.workspace import NODES, loss, pressure_grid, rms_distance
 
 __all__ = ["Optimisation"]
 
@@ -58,6 +62,20 @@ class Optimisation:
             return float(loss(self.best.workspace.tips, self.target.workspace.tips))
         except NoEquilibriumError:
             return math.inf
+
+    @property
+    def neglected(self) -> float | None:
+        """How far the loads that its rung leaves out move the best design's tips at most [mm].
+
+        None where nothing is left out; infinite where there is no equilibrium under them.
+        """
+        model, design = self.scene.climb.model, self.best
+        if not model.loads.any or model.rung is Rung.LOADED:
+            return None
+        pressures = pressure_grid(self.scene.pressures.levels)
+        full = model.on(Rung.LOADED).tips(design.values, pressures, parents_on_grid())
+        away = np.linalg.norm(full.positions - design.workspace.tips, axis=1)
+        return float(away.max()) if full.failure is None else math.inf
 
     @property
     def evaluations(self) -> int:

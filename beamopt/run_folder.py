@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from beamopt.actuator import Loading, RodRules
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
@@ -17,7 +19,6 @@ from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.result import Optimisation
-from beamopt.rod.ladder import Rung
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.target import Target, tips_csv
@@ -113,12 +114,13 @@ class RunFolder:
         """
         write_atomic(self.path / "history.csv", history_csv(result.history))
         if result.verdict.status is Status.JUDGED:
-            write_atomic(self.path / "tips.csv", _distances_csv(result))
             result.best.save(self.path / "best.json")
             if result.history[-1].best.verdict.status is Status.JUDGED:
                 result.final.save(self.path / "final.json")
-            if figures:
-                self._draw(result)
+            if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
+                write_atomic(self.path / "tips.csv", _distances_csv(result))
+                if figures:
+                    self._draw(result)
         write_atomic(self.path / "summary.json", json_text(summary(result)))
         timing = [
             ("search", result.seconds, "s"),
@@ -165,10 +167,15 @@ def summary(result: Optimisation) -> dict[str, Any]:
 
 def _rod(result: Optimisation) -> dict[str, Any]:
     """How the rod is solved; nothing for the paper's arc."""
-    climb = result.scene.climb
-    if climb.model.rung is Rung.ARC:
+    scene, climb = result.scene, result.scene.climb
+    if (scene.rod, scene.loads) == (RodRules(), Loading()):
         return {}
-    return {"rod": {"rung": climb.model.rung.value, "reason": climb.reason}}
+    said = {"rung": climb.model.rung.value, "reason": climb.reason}
+    moved = result.neglected if result.verdict.status is Status.JUDGED else None
+    if moved is None:
+        return {"rod": said}
+    there = moved if math.isfinite(moved) else Status.NO_EQUILIBRIUM.value
+    return {"rod": said | {"neglected_loads_move_mm": there}}
 
 
 def _outline(result: Optimisation) -> dict[str, Any]:
@@ -177,6 +184,8 @@ def _outline(result: Optimisation) -> dict[str, Any]:
     if not sealed:
         return {}
     faults = [str(fault) for fault in result.best.outline.faults]
+    if not math.isfinite(result.outline_loss):
+        return {"outline": {"status": Status.NO_EQUILIBRIUM.value, "faults": faults}}
     rms = rms_distance(result.outline_loss, NODES)
     return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
 

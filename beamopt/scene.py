@@ -39,8 +39,7 @@ __all__ = ["Scene", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
-SAMPLES, MOST_SAMPLES = 4, 12  # sections that the rungs are tried on
-SAMPLE = 0x5EC710  # of their streams
+SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how many; their stream
 
 
 class SectionRules(Model):
@@ -178,11 +177,13 @@ class Scene(Model):
     def _workspace_of_design(self, path: Path) -> Target:
         """A design's workspace: with its own length and material, at this scene's pressures.
 
-        Under this scene's loads, unless it comes with its own.
+        With this scene's segments, rest shape and loads, unless it has its own.
         """
         design = load_design(path)
-        if (design.rod, design.loads) == (RodRules(), Loading()):
-            design = design.model_copy(update={"rod": self.climbed_rules, "loads": self.loads})
+        if not design.loads.loads.any:
+            shaped = design.rod.segments or any(design.rod.rest_curvature)
+            rules = design.rod if shaped else self.climbed_rules
+            design = design.model_copy(update={"rod": rules, "loads": self.loads})
         workspace = self._workspace(design, "target.file", str(path))
         warnings = oddities(workspace.tips, workspace.levels, self.climb.model.straight_length)
         return Target(workspace, design.section, warnings)
@@ -203,8 +204,8 @@ class Scene(Model):
 
     def random_points(self, rng: np.random.Generator) -> FeaturePoints:
         """A random genotype after this scene's rules."""
-        rules, grid = self.section, self.grid.build()
-        return FeaturePoints.random(grid, rules.feature_points, rng, rules.material_probability)
+        rules = self.section.feature_points, rng, self.section.material_probability
+        return FeaturePoints.random(self.grid.build(), *rules)
 
     def design_of(self, points: FeaturePoints, notes: Mapping[str, Any] | None = None) -> Design:
         """The design that `points` make in this scene."""
@@ -228,22 +229,22 @@ class Scene(Model):
 
     @property
     def climbed_rules(self) -> RodRules:
-        """The rules with what `climb` chose; as they are where that follows without samples."""
-        if not self.loads.loads.any:
-            return self.rod
+        """The rules with what `climb` chose; as they are where that needs no samples."""
         model = self.climb.model
-        twist = "saint-venant" if model.twists else "stiff"
-        return self.rod.model_copy(update={"rung": model.rung.value, "twist": twist})
+        if not model.loads.any:
+            return self.rod
+        chosen = {"rung": model.rung.value, "twist": "saint-venant" if model.twists else "stiff"}
+        return self.rod.model_copy(update=chosen)
 
     def _samples(self, model: RodModel) -> list[SectionValues]:
         """A few random sections that the scene's search could meet."""
         found: list[SectionValues] = []
         for seed in range(MOST_SAMPLES):
             points = self.random_points(np.random.default_rng([SAMPLE, seed]))
-            grid = self.grid.build()
-            section = CrossSection.from_points(grid, points, self.wall_elements, self.seal.rules)
+            rules = self.grid.build(), points, self.wall_elements, self.seal.rules
+            section = CrossSection.from_points(*rules)
             if section.moments.is_stiff and len(found) < SAMPLES:
-                known = section_saint_venant(grid, section.labels, model.poissons_ratio)
+                known = section_saint_venant(section.grid, section.labels, model.poissons_ratio)
                 found.append(SectionValues(section.moments, known))
         return found
 
@@ -261,7 +262,7 @@ class Scene(Model):
 
 
 def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene file, or a bundled scene by its name.
+    """Read a scene file, or a bundled scene by name.
 
     Parameters
     ----------

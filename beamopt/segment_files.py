@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from beamopt.actuator import RodRules
 from beamopt.design import load_design
-from beamopt.model import read_json
 
 __all__ = ["with_sections"]
 
@@ -16,8 +16,8 @@ def with_sections(rules: RodRules, folder: Path) -> RodRules:
     segments = []
     for one in rules.segments:
         if one.file is not None:
-            load_design(folder / one.file)  # complains about the file by its name
-            section = read_json(folder / one.file)
+            section = json.loads(load_design(folder / one.file).json())
+            del section["notes"]
             one = one.model_copy(update={"file": None, "section": section})
         segments.append(one)
     return rules.model_copy(update={"segments": tuple(segments)})

@@ -1,6 +1,8 @@
 """Scenes with loads, segments and rest shapes: the rung they need, and what is judged on it."""
 
+import json
 import math
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -15,6 +17,7 @@ from beamopt.judge import Status
 from beamopt.optimisation import optimize
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
+from beamopt.run_folder import summary
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.workspace import loss
@@ -32,11 +35,11 @@ RUNGS = {
     "two-segments": Rung.CHAIN,
     "upright-column": Rung.LOADED,
 }
-DRAWN = "beamopt/scenes/hand_drawn_section.json"
+SCENES = Path(__file__).parents[1] / "beamopt/scenes"
 
 
 def design_with(loads: dict[str, object], rod: dict[str, object] | None = None) -> Design:
-    plain = load_design(Path(__file__).parents[1] / DRAWN)
+    plain = load_design(SCENES / "hand_drawn_section.json")
     changed = plain.model_dump(by_alias=True, exclude_none=True) | {"loads": loads}
     return Design.model_validate(changed | ({"rod": rod} if rod else {}))
 
@@ -83,6 +86,58 @@ def test_any_rung_can_be_forced(rung: str) -> None:
     assert tips[0, 0] == pytest.approx(0, abs=1e-9) or rung == "loaded"
 
 
+@pytest.mark.parametrize("name", ["gravity", "two-segments", "pre-curved"])
+@pytest.mark.parametrize("rung", ["arc", "chain", "loaded"])
+@pytest.mark.parametrize("twist", ["auto", "stiff", "saint-venant"])
+def test_every_rung_and_twist_can_be_forced(name: str, rung: str, twist: str) -> None:
+    scene = load_scene(name, [f'rod.rung="{rung}"', f'rod.twist="{twist}"'])
+    assert np.isfinite(scene.load_target().workspace.tips).all()
+    assert scene.climb.model.twists == (
+        rung == "loaded" and twist != "stiff" and scene.loads.loads.any
+    )
+
+
+def test_a_follower_force_does_not_hold_a_column_up() -> None:
+    """Loads without a potential are judged by eigenvalues: next to nothing changes no status."""
+    heavy = {"density": 12_000.0}
+    plain = load_design(SCENES / "stiff_column.json")
+    data = plain.model_dump(by_alias=True, exclude_none=True)
+    for loads in (heavy, heavy | {"follower_force": [0.0, 0.0, 1e-3]}):
+        design = Design.model_validate(data | {"loads": loads})
+        solved = design.solve(np.zeros((1, 3)))
+        assert solved.status == (RodStatus.BUCKLED,)
+
+
+def test_a_segment_file_is_found_beside_the_design(tmp_path: Path) -> None:
+    """And refused where nobody read it."""
+    (tmp_path / "other.json").write_bytes((SCENES / "round_chambers.json").read_bytes())
+    segments = [{"share": 0.5}, {"share": 0.5, "file": "other.json"}]
+    with pytest.raises(InputError, match="read by load_scene and load_design"):
+        _ = design_with({}, {"segments": segments}).workspace
+    data = design_with({}).model_dump(by_alias=True, exclude_none=True)
+    (tmp_path / "a.json").write_text(json.dumps(data | {"rod": {"segments": segments}}))
+    design = load_design(tmp_path / "a.json")
+    assert design.climb.model.rung is Rung.CHAIN
+    assert load_design(design.save(tmp_path / "b.json")).rod == design.rod
+    (tmp_path / "other.json").unlink()
+    with pytest.raises(InputError, match=r"other\.json"):
+        load_design(tmp_path / "a.json")
+
+
+def test_a_search_says_what_its_rung_leaves_out() -> None:
+    light = ["loads.density=5.0", "loads.tool_mass=0.1"]
+    result = optimize(load_scene("tool-at-the-tip", [*light, *QUICK[:2]]))
+    assert result.neglected is not None
+    assert 0 < result.neglected < 0.1
+    assert summary(result)["rod"]["neglected_loads_move_mm"] == result.neglected
+    assert "rod" not in summary(optimize(load_scene("hand-drawn-section", QUICK[:2])))
+
+
+def test_no_equilibrium_survives_a_process() -> None:
+    error = NoEquilibriumError((0.0, 50.0, 0.0), RodStatus.BUCKLED)
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
 def test_all_rungs_agree_where_the_arc_is_exact() -> None:
     design = design_with({})
     tips = {
@@ -110,7 +165,7 @@ def test_tips_of_segments_are_material_centroids() -> None:
     """Without pressure the tip of the second section lies beside the axis of the first."""
     scene = load_scene("two-segments")
     design = scene.design_of(scene.random_points(np.random.default_rng([1])))
-    other = load_design(Path("beamopt/scenes/round_chambers.json")).moments.centroid
+    other = load_design(SCENES / "round_chambers.json").moments.centroid
     offset = design.workspace.tips[0] - [*(other - design.moments.centroid), 100.0]
     np.testing.assert_allclose(offset, 0, atol=1e-9)
 

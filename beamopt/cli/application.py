@@ -116,6 +116,52 @@ def show(
 
 
 @app.command()
+def chart(
+    scene: SceneName,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the chart; charts/SCENE if left out.")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of a random section instead of the target's.")
+    ] = None,
+    overrides: Overrides = None,
+) -> None:
+    """Error against time of all methods for rods under loads, on a scene's 27 tips."""
+    from beamopt.cli.chart import chart_command
+
+    chart_command(scene, out, seed, overrides or [])
+
+
+@app.command()
+def stability(
+    out: Annotated[Path, typer.Option(help="Folder of the map.")] = Path("stability"),
+    samples: Annotated[
+        int, typer.Option(min=1, max=1_000_000, help="Random sections under random loads.")
+    ] = 1000,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Processes.")] = 2,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of sections and loads.")] = 0,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the map there.")] = False,
+) -> None:
+    """Map where each method for rods under loads is right, wrong, or gives up."""
+    from beamopt.cli.stability import stability_command
+
+    stability_command(out, samples, workers, seed, resume)
+
+
+@app.command()
+def rung(
+    subject: Annotated[
+        str, typer.Argument(metavar="SCENE|DESIGN|RUN", help="Scene, design file or run folder.")
+    ],
+    overrides: Overrides = None,
+) -> None:
+    """Say how its rod is solved (arc, chain or loaded), and why no lower rung will do."""
+    from beamopt.cli.rung import rung_command
+
+    rung_command(subject, overrides or [])
+
+
+@app.command()
 def scenes() -> None:
     """List the bundled scenes."""
     from beamopt.cli.scenes import scenes_command

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -80,6 +81,7 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
     return [
         ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
         *_outline(result),
+        *_neglected(result),
         ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
         ("K", f"{verdict.K:.6g}"),
         ("T = L + K", f"{verdict.T:.6g}"),
@@ -93,6 +95,15 @@ def _outline(result: Optimisation) -> list[tuple[str, str]]:
         return []
     faults = [("note", str(fault)) for fault in result.best.outline.faults]
     return [("L of outline", f"{result.outline_loss:.6g} mm²"), *faults]
+
+
+def _neglected(result: Optimisation) -> list[tuple[str, str]]:
+    """What the loads would do to the best design, where its rung leaves them out."""
+    moved = result.neglected
+    if moved is None:
+        return []
+    said = f"the loads that are left out move its tips by up to {moved:.2g} mm"
+    return [("note", said if math.isfinite(moved) else "it has no equilibrium under its loads")]
 
 
 def _worth_a_look(folder: Path) -> list[str]:

@@ -27,8 +27,8 @@ __all__ = ["Line", "error_figure"]
 
 BLUE, RED, GREEN, VIOLET = SERIES_COLOURS
 LOOKS: dict[str, dict[str, Any]] = {
-    "arc": {"color": DESIGN_COLOUR, "marker": "*", "ls": "", "ms": 11},
-    "chain": {"color": DESIGN_COLOUR, "marker": "P", "ls": "", "ms": 8},
+    "arc": {"color": DESIGN_COLOUR, "marker": "*", "ls": "", "ms": 11, "zorder": 5},
+    "chain": {"color": DESIGN_COLOUR, "marker": "P", "ls": "", "ms": 8, "zorder": 5},
     "adaptive": {"color": BLUE, "marker": "D", "ls": "-", "ms": 6},
     "modes": {"color": BLUE, "marker": "o", "ls": "--", "mfc": "white"},
     "elements": {"color": RED, "marker": "s", "ls": "-"},
@@ -71,21 +71,23 @@ def error_figure(
     axes.set(xscale="log", yscale="log", title=title)
     axes.set(xlabel="time for all tips [ms]", ylabel="largest error of a tip [mm]")
     for line in lines:
-        _draw(axes, line)
+        _draw(axes, line, uncertainty)
     _limits(axes, lines, tolerance, uncertainty)
     axes.grid(True)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=3.6, labelspacing=0.9)
     return figure
 
 
-def _draw(axes: Axes, line: Line) -> None:
-    look = {"ms": 5.5, "lw": 1.4} | LOOKS.get(line.name, {"color": DESIGN_COLOUR, "marker": "."})
+def _draw(axes: Axes, line: Line, uncertainty: float) -> None:
+    look = {"ms": 5.5, "lw": 1.4, "zorder": 3} | LOOKS.get(
+        line.name, {"color": DESIGN_COLOUR, "marker": "."}
+    )
     shown = np.isfinite(line.errors) & (line.errors > SMALLEST) & np.isfinite(line.seconds)
     good, bad = shown & line.whole, shown & ~line.whole
-    axes.plot(1e3 * line.seconds[good], line.errors[good], label=line.name, zorder=3, **look)
+    axes.plot(1e3 * line.seconds[good], line.errors[good], label=line.name, **look)
     failed = {"ls": "", "marker": "x", "color": look["color"], "ms": 7, "zorder": 3}
     axes.plot(1e3 * line.seconds[bad], line.errors[bad], **failed)
-    ends = np.flatnonzero(good)
+    ends = np.flatnonzero(good & (line.errors > uncertainty))
     for k in {ends[0], ends[-1]} if ends.size else ():
         if line.resolutions[k] is not None:
             at = (1e3 * line.seconds[k], line.errors[k])

@@ -20,6 +20,7 @@ from beamopt.plot.style import (
     styled,
 )
 from beamopt.plot.workspace import draw_diagonal, draw_down, draw_from_above, pressure_handles
+from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -45,7 +46,9 @@ def design_figure(design: Design, target: Workspace | None = None, title: str = 
     right = figure.add_subplot(133, projection="3d")
     sealed = design.seal.rules.sealed
     draw_section(left, design.section, "section", design.outline if sealed else None)
-    lines = design.climb.model.backbones(design.values, design.workspace.pressures)
+    lines = design.climb.model.backbones(
+        design.values, design.workspace.pressures, parents_on_grid()
+    )
     draw_from_above(middle, design.workspace, target, lines)
     draw_diagonal(right, design.workspace, target, lines)
     if design.loads.weighs:

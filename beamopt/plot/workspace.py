@@ -38,7 +38,9 @@ def draw_diagonal(
     _draw(axes, (0, 1, 2), workspace, target, backbones)
     shown = [w.tips for w in (workspace, target) if w is not None]
     points = np.vstack(shown + ([backbones.reshape(-1, 3)] if backbones is not None else []))
-    axes.set_box_aspect(np.maximum(np.ptp(points, axis=0), 20.0), zoom=1.1)
+    axes.set_box_aspect(
+        np.maximum(np.nanmax(points, axis=0) - np.nanmin(points, axis=0), 20.0), zoom=1.1
+    )
     axes.view_init(elev=22, azim=-60)
     axes.locator_params(nbins=4)
     axes.locator_params(axis="y", nbins=3)
@@ -47,7 +49,7 @@ def draw_diagonal(
 
 def draw_down(axes: Any, down: FloatArray, near: FloatArray) -> None:
     """Draw an arrow that points down in the room, (3,) in the base's axes, beside the points."""
-    low, high = near.min(axis=0), near.max(axis=0)
+    low, high = np.nanmin(near, axis=0), np.nanmax(near, axis=0)
     size = 0.25 * float(np.max(high - low))
     start = np.array([low[0] - 0.3 * size, high[1], (low[2] + high[2]) / 2]) - down * size / 2
     axes.quiver(*start, *(down * size), color=ASIDE_COLOUR, lw=1.6, arrow_length_ratio=0.25)

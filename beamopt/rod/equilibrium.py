@@ -20,7 +20,7 @@ __all__ = ["ELEMENTS", "MODES", "MethodName", "solve_rod"]
 MODES = (2, 4, 7, 12, 20)
 """Modes a segment, from coarse to fine."""
 
-ELEMENTS = (16, 64, 256, 512)
+ELEMENTS = (16, 64, 256)
 """Elements in all, from coarse to fine."""
 
 MethodName = Literal["modes", "elements"]
@@ -28,6 +28,7 @@ MethodName = Literal["modes", "elements"]
 
 COARSE = 1e-3  # rad: the last step of the iteration at a tolerance of 0.1 % of the length
 SAME_LOAD = 0.01  # a failure is believed when two resolutions end within this share of each other
+SAME_STEP = 1e-3  # and this share of the load, some of the smallest steps
 
 Level = Callable[[FloatArray], RodSolution]
 
@@ -47,7 +48,8 @@ def solve_rod(
     ----------
     tolerance : of the tips' estimated error [mm].
     parents : (n, 3) see `StrainModes`.
-    all_or_none : look no further where one case fails; the others then may be SKIPPED.
+    all_or_none : look no further where one case fails, nor by elements; the others then may be
+        SKIPPED.
     method : see `MethodName`.
 
     Returns
@@ -65,7 +67,7 @@ def solve_rod(
         first = _level(replace(modes, parents=parents), rod, MODES[0])
         by_modes = [first, *(_level(modes, rod, count) for count in MODES[1:])]
         found, open_ = _refined(by_modes, rest, tolerance, all_or_none)
-        if open_.size:
+        if open_.size and not all_or_none:
             other, left = _refined(by_elements[1:], rest[open_], tolerance, all_or_none)
             found, open_ = merged(found, other, open_), open_[left]
     late = [k for k in open_.tolist() if found.status[k] is RodStatus.CONVERGED]
@@ -102,7 +104,7 @@ def _is_good(found: RodSolution, k: int, tolerance: float) -> bool:
 
 def _is_same_failure(coarse: RodSolution, case: int, fine: RodSolution, k: int) -> bool:
     status = fine.status[k]
-    if status is RodStatus.CONVERGED or coarse.status[case] is not status:
+    if status in (RodStatus.CONVERGED, RodStatus.SKIPPED) or coarse.status[case] is not status:
         return False
     apart = abs(coarse.factor[case] - fine.factor[k])
-    return bool(apart <= SAME_LOAD * fine.factor[k])
+    return bool(apart <= SAME_LOAD * fine.factor[k] + SAME_STEP)

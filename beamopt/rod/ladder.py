@@ -13,7 +13,7 @@ from beamopt.arrays import FloatArray, IndexArray
 from beamopt.rod.arc import arc_centreline, arc_tips
 from beamopt.rod.chain import chain_centrelines, chain_tips
 from beamopt.rod.equilibrium import MethodName, solve_rod
-from beamopt.rod.law import cross, section_law
+from beamopt.rod.law import cross, poissons_ratio, section_law
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.response import Response
 from beamopt.rod.rod import LineLoad, PointLoad, Rod, Segment
@@ -126,8 +126,8 @@ class RodModel:
 
     @property
     def poissons_ratio(self) -> float:
-        """ν of E and G, as far as an isotropic material can have it."""
-        return min(max(self.youngs_modulus / (2 * self.shear_modulus) - 1, 0.0), 0.5)
+        """ν of E and G; see `law.poissons_ratio`."""
+        return poissons_ratio(self.youngs_modulus, self.shear_modulus)
 
     @property
     def is_uniform(self) -> bool:
@@ -185,15 +185,17 @@ class RodModel:
             strains = strains + np.array([0.0, self.curvature[0], self.curvature[1]])
         return strains
 
-    def backbones(self, section: SectionValues, pressures: FloatArray) -> FloatArray:
+    def backbones(
+        self, section: SectionValues, pressures: FloatArray, parents: IndexArray | None = None
+    ) -> FloatArray:
         """(n, m, 3) the axis from base to tip [mm] at the pressures (n, 3) [kPa]; NaN without."""
         if self.rung is Rung.ARC:
             strains = self._arc_strains(section.moments, pressures)
             return arc_centreline(strains, np.linspace(0, self.length, DRAWN))
         rod, rest = self.rod(section), self.rest(section, pressures)
         if self.rung is Rung.CHAIN:
-            return chain_centrelines(rod, rest, DRAWN // len(self.pieces))
-        found = StrainModes().solve(rod, rest, DRAWN_MODES)
+            return chain_centrelines(rod, rest, max(2, DRAWN // len(self.pieces)))
+        found = StrainModes(parents=parents).solve(rod, rest, DRAWN_MODES)
         base = np.broadcast_to(rod.base.position, (len(rest), 1, 3))
         return np.concatenate([base, found.centrelines, found.tips[:, None, :]], axis=1)
 

@@ -9,7 +9,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.section.moments import Moments
 
-__all__ = ["SectionLaw", "cross", "section_law"]
+__all__ = ["SectionLaw", "cross", "poissons_ratio", "section_law"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +61,11 @@ def cross(vector: FloatArray) -> FloatArray:
     """(3, 3) matrix [a]× with [a]× b = a × b."""
     x, y, z = vector
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def poissons_ratio(youngs_modulus: float, shear_modulus: float) -> float:
+    """ν of E and G [kPa], as far as an isotropic material can have it: 0 … 0.5."""
+    return min(max(youngs_modulus / (2 * shear_modulus) - 1, 0.0), 0.5)
 
 
 def section_law(

@@ -181,12 +181,24 @@ def is_stable(tangent: FloatArray, held: int, conservative: bool) -> bool:
     """Whether the potential has a minimum here, among what a held tip allows.
 
     A tangent has one negative eigenvalue for each of the `held` Lagrange multipliers at a minimum.
-    Loads without a potential: whether the tangent's determinant has the sign that it has at rest,
-    which is lost by divergence (not by flutter, which statics can not see).
+    Loads without a potential: whether the tangent has no negative real eigenvalue; with a held
+    tip, whether its determinant has the sign that it has at rest. Divergence changes that; flutter,
+    which statics can not see, does not.
     """
     if conservative:
         return negative_pivots(tangent) == held
+    if held == 0:
+        return negative_pivots(tangent) == 0 or not _has_negative_eigenvalue(tangent)
     return _sign_of_determinant(tangent) * (1.0 if held % 2 == 0 else -1.0) > 0
+
+
+@compiled
+def _has_negative_eigenvalue(tangent: FloatArray) -> bool:
+    """Whether a real eigenvalue is negative, rows and columns scaled to the diagonal's size."""
+    scale = np.sqrt(np.abs(np.diag(tangent))) + 1e-300
+    values = np.linalg.eigvals((tangent / scale / scale.reshape(-1, 1)).astype(np.complex128))
+    real, imaginary = values.real, np.abs(values.imag)
+    return bool(np.any((real <= 0.0) & (imaginary <= 1e-9 * np.abs(real))))
 
 
 @compiled

@@ -19,6 +19,7 @@ from beamopt.rod.tangent import tangent_into
 __all__ = ["LoadPath", "PathStatus", "follow_path"]
 
 CLOSE = 1e-9  # of the step, where an iteration has arrived
+AT_REST = 1e-6  # of the length, or rad, that a held tip may be off at rest
 MOST_ITERATIONS = 12
 EASY, HARD = 4, 7  # iterations that make the next step longer or shorter
 SMALLEST, LARGEST = 1e-4, 8.0  # steps, as multiples of the first one
@@ -63,15 +64,21 @@ def follow_path(
     """Follow the equilibria of a rod from rest, through limit points.
 
     Pseudo-arc-length continuation (Keller 1977) in the modes' amplitudes, scaled to angles, and the
-    load factor. The tip of a held rod is held where it is without loads.
+    load factor. A held tip has to be held where it is without loads.
 
     Parameters
     ----------
     modes : Legendre modes a segment. step : first step [rad, or share of the load].
     steps : at most. factor : of the loads, where the path ends.
+
+    Raises
+    ------
+    ValueError : a tip that is held elsewhere than where it is without loads.
     """
     system = _System(rod, modes)
     here, at = np.zeros(system.size), 0.0
+    if np.abs(system.residual(here, at)).max() > AT_REST * rod.length:
+        raise ValueError("tip: must be held where it is without loads")
     points = [system.point(here, at)]
     direction = system.direction(here, at, None)
     length, status = step, PathStatus.ENOUGH_STEPS
@@ -83,11 +90,15 @@ def follow_path(
                 status = PathStatus.STEPS_TOO_SMALL
                 break
             continue
+        last = np.append(here, at)
         here, at, count = found
-        points.append(system.point(here, at))
-        if at >= factor:
+        if at >= factor:  # back to where it was asked for
+            share = (factor - last[-1]) / (at - last[-1])
+            here = system.settle(last[:-1] + share * (here - last[:-1]), factor)
+            points.append(system.point(here, factor))
             status = PathStatus.FULL_LOAD
             break
+        points.append(system.point(here, at))
         direction = system.direction(here, at, direction)
         if count <= EASY:
             length = min(1.5 * length, LARGEST * step)
@@ -172,6 +183,16 @@ class _System:
             if np.linalg.norm(change) < CLOSE * length:
                 return now[:-1], float(now[-1]), count
         return None
+
+    def settle(self, near: FloatArray, factor: float) -> FloatArray:
+        """The equilibrium at a load, from one near it."""
+        for _ in range(MOST_ITERATIONS):
+            residual = self.residual(near, factor)
+            change = np.linalg.solve(self.tangent(near, factor), residual)
+            near = near - change
+            if np.linalg.norm(change) < CLOSE:
+                break
+        return near
 
     def point(
         self, scaled: FloatArray, factor: float

@@ -9,8 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from beamopt.rod import equilibrium
 from beamopt.rod.equilibrium import MODES, solve_rod
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
+from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 from tests.rod.samples import PLANE, plain_law, random_rod, solved
 
@@ -93,3 +95,27 @@ def test_more_modes_only_where_needed() -> None:
     rod = Rod((Segment(1.0, plain_law(free=PLANE), end=end),))
     found = solve_rod(rod, rod.rest[None], 1e-12)
     assert len(found.stations) == MODES[0] + 3
+
+
+def test_cases_that_were_skipped_are_no_failures() -> None:
+    """Two resolutions that skip the same case have not agreed on anything."""
+    one = _outcome(RodStatus.LIMIT_POINT, 0.5, RodStatus.SKIPPED)
+    two = _outcome(RodStatus.BUCKLED, 0.8, RodStatus.SKIPPED)
+    good = replace(_outcome(RodStatus.CONVERGED, 1.0, RodStatus.CONVERGED), error=np.zeros(2))
+    levels = [lambda rest: one, lambda rest: two, lambda rest: good]
+    found, open_ = equilibrium._refined(levels, np.zeros((2, 1, 6)), 1e-3, True)
+    assert found.converged.all()
+    assert not open_.size
+
+
+def _outcome(first: RodStatus, factor: float, second: RodStatus) -> RodSolution:
+    return RodSolution(
+        (first, second),
+        np.zeros((2, 3)),
+        np.zeros((2, 3, 3)),
+        np.array([factor, 1.0]),
+        np.full(2, np.nan),
+        np.ones(2, dtype=np.int64),
+        np.zeros(1),
+        np.zeros((2, 1, 3)),
+    )

@@ -62,7 +62,7 @@ def test_the_error_is_no_flattery(
 @pytest.mark.parametrize("free", [BEND, SPACE])
 @pytest.mark.parametrize("modes", [1, 2, 3])
 def test_the_error_is_mostly_right(free: tuple[int, ...], modes: int) -> None:
-    """Of 40 rods under small and large loads nine in ten are at most 1.5 times as far off."""
+    """Of 40 rods under small and large loads none is more than 1.3 times as far off."""
     shares = []
     for seed in range(40):
         rod = random_rod(np.random.default_rng(seed), free=free, load=0.2 + seed / 20)
@@ -70,8 +70,7 @@ def test_the_error_is_mostly_right(free: tuple[int, ...], modes: int) -> None:
         if coarse.converged[0] and fine.converged[0]:
             shares.append(np.linalg.norm(coarse.tips - fine.tips) / coarse.error[0])
     assert len(shares) > 30
-    assert np.quantile(shares, 0.9) < 1.5
-    assert np.max(shares) < 4
+    assert np.max(shares) < 1.3
     assert 0.03 < np.median(shares) < 1.5
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from beamopt.rod.law import SectionLaw
+from beamopt.rod.modes import StrainModes
 from beamopt.rod.path import PathStatus, follow_path
-from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
+from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment, Tip
 from tests.rod.samples import PLANE, SPACE, plain_law, solved
 from tests.rod.test_following import arch
 
@@ -56,3 +58,21 @@ def test_the_size_of_the_load_does_not_count(force: float) -> None:
     path = follow_path(arch(force, 1.4), step=0.05, steps=60, modes=7)
     assert path.status is not PathStatus.STEPS_TOO_SMALL
     assert np.all(np.diff(path.factors) > 0)
+
+
+def test_a_path_ends_at_the_load_that_was_asked_for() -> None:
+    """And at the tip that the rod has there."""
+    law = SectionLaw(np.diag([1.0, 1.0, 0.7]), np.zeros((3, 3)), np.zeros((3, 3)), (0, 1, 2))
+    end = PointLoad(force=np.array([10.0, 0.0, 0.0]))
+    rod = Rod((Segment(1.0, law, end=end),))
+    path = follow_path(rod)
+    assert path.status is PathStatus.FULL_LOAD
+    assert path.factors[-1] == 1.0
+    tip = StrainModes().solve(rod, rod.rest[None], 12).tips[0]
+    np.testing.assert_allclose(path.tips[-1], tip, rtol=0, atol=1e-9)
+
+
+def test_a_tip_that_is_held_elsewhere_is_refused() -> None:
+    law = SectionLaw(np.diag([1.0, 1.0, 0.7]), np.zeros((3, 3)), np.zeros((3, 3)), (0, 1, 2))
+    with pytest.raises(ValueError, match="held where it is without loads"):
+        follow_path(Rod((Segment(1.0, law),), tip=Tip(position=np.array([0.3, 0.0, 0.8]))))

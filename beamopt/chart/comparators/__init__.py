@@ -1,0 +1,1 @@
+"""Methods that the charts hold against those shipped; on the same face as they."""

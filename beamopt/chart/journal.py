@@ -1,0 +1,86 @@
+"""Samples of the stability map on disk as they come: a kill loses those under way only."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from beamopt.chart.cases import case_of
+from beamopt.chart.sampling import Row, Sample
+from beamopt.chart.verdict import Verdict, Witness
+from beamopt.errors import InputError
+from beamopt.rod.status import RodStatus
+
+__all__ = ["Journal"]
+
+SCHEMA = "beamopt-stability/1"
+
+
+class Journal:
+    """A file with a line that says what is sampled, and one a sample.
+
+    path : of the file. asked : what the samples depend on; that of a file that is there must be
+    the same.
+
+    Raises
+    ------
+    InputError : the file that is there is another one's.
+    """
+
+    def __init__(self, path: Path, asked: dict[str, Any]) -> None:
+        self.path = path
+        self.asked = {"schema": SCHEMA, **asked}
+        self.samples: dict[int, Sample] = {}
+        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.exists() else []
+        whole = [line for line in lines if line.endswith("\n")]
+        if not whole:
+            path.write_text(json.dumps(self.asked) + "\n", encoding="utf-8")
+            return
+        self._read(whole)
+        if len(whole) < len(lines):  # a kill left half a line
+            path.write_text("".join(whole), encoding="utf-8")
+
+    def _read(self, lines: list[str]) -> None:
+        try:
+            head, *samples = (json.loads(line) for line in lines)
+            read = [_sample(self.asked["seed"], data) for data in samples]
+        except (ValueError, KeyError, TypeError, AttributeError):
+            raise InputError(self.path, "", None, "no journal of a stability map") from None
+        if head != self.asked:
+            said = "the map there is of another seed, or of other methods"
+            raise InputError(self.path, "", None, said)
+        self.samples = {sample.case.index: sample for sample in read}
+
+    def add(self, sample: Sample) -> None:
+        """Keep a sample."""
+        self.samples[sample.case.index] = sample
+        with self.path.open("a", encoding="utf-8") as stream:
+            stream.write(json.dumps(_data(sample)) + "\n")
+
+
+def _data(sample: Sample) -> dict[str, Any]:
+    return {
+        "index": sample.case.index,
+        "witness": sample.witness.value,
+        "truth": sample.truth.name,
+        "gap": sample.gap,
+        "seconds": sample.seconds,
+        "rows": [
+            (
+                *(row.method, row.resolution, row.verdict.name, row.status.name),
+                *(row.distance, row.seconds),
+            )
+            for row in sample.rows
+        ],
+    }
+
+
+def _sample(seed: int, data: dict[str, Any]) -> Sample:
+    case = case_of(seed, data["index"])
+    rows = tuple(
+        Row(case, method, resolution, Verdict[verdict], RodStatus[status], distance, seconds)
+        for method, resolution, verdict, status, distance, seconds in data["rows"]
+    )
+    witness, truth = Witness(data["witness"]), RodStatus[data["truth"]]
+    return Sample(case, witness, truth, data["gap"], rows, data["seconds"])

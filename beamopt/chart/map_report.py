@@ -1,0 +1,148 @@
+"""What a stability map leaves to read: every answer, rates, maps, and what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from beamopt.chart.cases import SLENDERNESSES, Kind, sizes_of
+from beamopt.chart.reading import reading
+from beamopt.chart.sampling import LIMIT, Row, Sample
+from beamopt.chart.summary import commonest, rates_of
+from beamopt.chart.verdict import Verdict
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.plot.stability_map import Cell, Panel, map_figure
+from beamopt.plot.style import save_figure
+from beamopt.provenance import provenance
+
+__all__ = ["NAMES", "write_map"]
+
+ANSWERS = "kind,size,slenderness,seed,method,resolution,verdict,status,distance,seconds"
+TRUTHS = "seed,kind,size,slenderness,witness,truth,gap"
+NAMES = (
+    *("stability.csv", "truth.csv", "success.csv", "reading.md", "provenance.json"),
+    *(f"{figure}.{ending}" for figure in ("stability", "slenderness") for ending in ("svg", "png")),
+)
+"""Every file that `write_map` writes."""
+
+
+def write_map(folder: Path, samples: Sequence[Sample], seed: int, *, figures: bool) -> None:
+    """Write everything; each file whole or not at all."""
+    write_atomic(folder / "stability.csv", _answers_csv(samples))
+    write_atomic(folder / "truth.csv", _truths_csv(samples))
+    write_atomic(folder / "success.csv", _success_csv(samples))
+    write_atomic(folder / "reading.md", reading(samples))
+    if figures:
+        _draw(folder, samples)
+    made = {"seed": seed, "samples": len(samples), "seconds_a_case": LIMIT}
+    write_atomic(folder / "provenance.json", json_text(made | provenance()))
+
+
+def _answers_csv(samples: Sequence[Sample]) -> str:
+    rows = [
+        (
+            *(row.case.kind.value, row.case.size, row.case.slenderness, row.case.index),
+            *(row.method, row.resolution, row.verdict.value, row.status.value),
+            *(_rounded(row.distance), _rounded(row.seconds)),
+        )
+        for sample in samples
+        for row in sample.rows
+    ]
+    return csv_text(ANSWERS, rows)
+
+
+def _truths_csv(samples: Sequence[Sample]) -> str:
+    rows = []
+    for one in samples:
+        case, truth = one.case, (one.witness.value, one.truth.value, _rounded(one.gap))
+        rows.append((case.index, case.kind.value, case.size, case.slenderness, *truth))
+    return csv_text(TRUTHS, rows)
+
+
+def _rounded(value: float) -> float | None:
+    return None if np.isnan(value) else float(f"{value:.3g}")
+
+
+def _success_csv(samples: Sequence[Sample]) -> str:
+    """A row a method and kind of load, and one a method for all of them."""
+    names = [verdict.value.replace(" ", "_") for verdict in Verdict]
+    lines = []
+    for method in _methods(samples):
+        for kind in (*Kind, None):
+            rows = _rows(samples, lambda row, m=method, k=kind: _is(row, m, k))  # type: ignore[misc]
+            if not rows:
+                continue
+            rates = rates_of(rows)
+            counts = [rates.verdicts[verdict] for verdict in Verdict]
+            shares = (_rounded(rates.success), _rounded(rates.wrong_tips), _rounded(rates.seconds))
+            lines.append((method, kind.value if kind else "all", rates.cases, *counts, *shares))
+    header = f"method,kind,cases,{','.join(names)},success,wrong_tips,median_seconds"
+    return csv_text(header, lines)
+
+
+def _is(row: Row, method: str, kind: Kind | None) -> bool:
+    return row.method == method and kind in (None, row.case.kind)
+
+
+def _rows(samples: Sequence[Sample], wanted: Callable[[Row], bool]) -> list[Row]:
+    return [row for sample in samples for row in sample.rows if wanted(row)]
+
+
+def _methods(samples: Sequence[Sample]) -> list[str]:
+    return list(dict.fromkeys(row.method for sample in samples for row in sample.rows))
+
+
+def _draw(folder: Path, samples: Sequence[Sample]) -> None:
+    count = f"{len(samples):,} random sections under load"
+    by_size = [
+        _panel(
+            kind.text,
+            [sample for sample in samples if sample.case.kind is kind],
+            [(f"{size:g}", size) for size in sizes_of(kind)],
+            lambda row: row.case.size,
+        )
+        for kind in Kind
+    ]
+    figure = map_figure(by_size, f"{count}: commonest verdict and median time")
+    save_figure(figure, folder / "stability.svg", folder / "stability.png")
+    columns = [(f"{value:g}", value) for value in SLENDERNESSES]
+    title = "length over diameter, all loads"
+    panel = _panel(title, samples, columns, lambda row: row.case.slenderness, with_share=True)
+    figure = map_figure([panel], f"{count}: commonest verdict, success, time", across=1)
+    save_figure(figure, folder / "slenderness.svg", folder / "slenderness.png")
+
+
+def _panel(
+    title: str,
+    samples: Sequence[Sample],
+    columns: Sequence[tuple[str, float]],
+    value_of: Callable[[Row], float],
+    *,
+    with_share: bool = False,
+) -> Panel:
+    """A map of some samples, whose column is the value that `value_of` finds.
+
+    with_share : of successes, in each cell; of many loads together the commonest says little.
+    """
+    methods = _methods(samples)
+    found: dict[tuple[str, float], list[Row]] = {}
+    for sample in samples:
+        for row in sample.rows:
+            found.setdefault((row.method, value_of(row)), []).append(row)
+    cells = [
+        [_cell(found.get((method, value), []), with_share) for _, value in columns]
+        for method in methods
+    ]
+    return Panel(title, methods, [text for text, _ in columns], cells)
+
+
+def _cell(rows: Sequence[Row], with_share: bool) -> Cell | None:
+    if not rows:
+        return None
+    usual = commonest(rows)
+    flagged = any(row.verdict.is_wrong_tip for row in rows) and not usual.is_wrong_tip
+    rates = rates_of(rows)
+    share = rates.success if with_share and rates.decided else None
+    return Cell(usual.value, rates.seconds, flagged, share)

@@ -1,0 +1,95 @@
+"""All methods on one case of the stability map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from time import perf_counter, thread_time
+
+import numpy as np
+
+from beamopt.chart.cases import Case, Kind, LoadedSection, case_of
+from beamopt.chart.methods import DEFAULT_RESOLUTIONS, all_methods, limited
+from beamopt.chart.truth import true_equilibrium
+from beamopt.chart.verdict import Answer, Truth, Verdict, Witness, judged
+from beamopt.rod.solution import Method
+from beamopt.rod.status import RodStatus
+
+__all__ = ["LIMIT", "METHODS", "SHIPPED", "Row", "Sample", "solve_sample"]
+
+LIMIT = 0.5
+"""Seconds of processor time that a case may take."""
+MOST_SHARED = 4.0
+SHIPPED = "adaptive"
+"""The method that the optimiser uses."""
+METHODS = tuple(method.name for method in all_methods())
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method on one case.
+
+    distance : how far its tip is `apart` from the truth. seconds : of processor time.
+    """
+
+    case: Case
+    method: str
+    resolution: int
+    verdict: Verdict
+    status: RodStatus
+    distance: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One case. witness, truth, gap : of its `Truth`. seconds : all of it took."""
+
+    case: Case
+    witness: Witness
+    truth: RodStatus
+    gap: float
+    rows: tuple[Row, ...]
+    seconds: float
+
+
+def solve_sample(seed: int, index: int, names: Sequence[str] = METHODS) -> Sample:
+    """Solve a case from its straight rest, with the methods of those names."""
+    methods = _ready(tuple(names))
+    case = case_of(seed, index)
+    loaded = LoadedSection.of(case)
+    started = perf_counter()
+    at_work = thread_time()
+    truth = true_equilibrium(loaded.rod, loaded.rest)
+    at_work = thread_time() - at_work
+    # methods look at the clock, which runs on while other programs have the processor
+    shared = min(max((perf_counter() - started) / at_work, 1.0), MOST_SHARED)
+    rows = tuple(_row(case, limited(method, shared * LIMIT), loaded, truth) for method in methods)
+    seconds = perf_counter() - started
+    return Sample(case, truth.witness, truth.status, truth.gap, rows, seconds)
+
+
+def _row(case: Case, method: Method, loaded: LoadedSection, truth: Truth) -> Row:
+    """What a method says; it is not asked where nobody knows better."""
+    resolution = DEFAULT_RESOLUTIONS[method.name]
+    if not truth.known:
+        skipped = Verdict.UNDECIDED, RodStatus.SKIPPED
+        return Row(case, method.name, resolution, *skipped, np.nan, np.nan)
+    started = thread_time()
+    found = method.solve(loaded.rod, loaded.rest, resolution)
+    answer = Answer(found.status[0], found.tips[0], thread_time() - started)
+    verdict, distance = judged(answer, truth, loaded.rod.length, LIMIT)
+    return Row(case, method.name, resolution, verdict, answer.status, distance, answer.seconds)
+
+
+@cache
+def _ready(names: tuple[str, ...]) -> tuple[Method, ...]:
+    """The methods of those names, compiled: a process's first case is not to pay for that."""
+    methods = [method for method in all_methods() if method.name in names]
+    for kind in Kind:
+        loaded = LoadedSection.of(Case(0, 0, kind, 0.1, 20.0))
+        true_equilibrium(loaded.rod, loaded.rest)
+        for method in methods:
+            method.solve(loaded.rod, loaded.rest, DEFAULT_RESOLUTIONS[method.name])
+    return tuple(methods)

@@ -1,0 +1,68 @@
+"""The stability map: many random sections under many loads, on any number of processes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import as_completed
+from pathlib import Path
+
+from beamopt.chart.journal import Journal
+from beamopt.chart.map_report import NAMES, write_map
+from beamopt.chart.sampling import METHODS, Sample, solve_sample
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.study.pool import processes
+
+__all__ = ["run_stability"]
+
+JOURNAL = "journal.jsonl"
+
+
+def run_stability(
+    out: Path,
+    samples: int = 1000,
+    *,
+    workers: int = 1,
+    seed: int = 0,
+    methods: Sequence[str] = METHODS,
+    resume: bool = False,
+    callback: Callable[[Sample, int], None] | None = None,
+    figures: bool = True,
+) -> list[Sample]:
+    """Solve all samples with all methods and write tables, maps and their reading to `out`.
+
+    Parameters
+    ----------
+    workers : processes; no answer depends on it, only times do.
+    methods : names, of `sampling.METHODS`.
+    resume : go on with a map that was cut short.
+    callback : called with each sample as it comes, and how many are done.
+
+    Raises
+    ------
+    InputError : `out` holds something else, or can not be written.
+    """
+    claim_folder(out, JOURNAL, resume=resume)
+    clear_leftovers(out, (JOURNAL, *NAMES))
+    journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
+    missing = [index for index in range(samples) if index not in journal.samples]
+    for sample in _solved(seed, missing, methods, workers):
+        journal.add(sample)
+        if callback is not None:
+            callback(sample, len(journal.samples))
+    ordered = [journal.samples[index] for index in range(samples)]
+    write_map(out, ordered, seed, figures=figures)
+    journal.path.unlink()  # all of it stands in the tables
+    return ordered
+
+
+def _solved(
+    seed: int, indices: Sequence[int], methods: Sequence[str], workers: int
+) -> Iterator[Sample]:
+    """Samples as they come."""
+    if workers == 1:
+        yield from (solve_sample(seed, index, methods) for index in indices)
+        return
+    with processes(workers) as executor:
+        futures = [executor.submit(solve_sample, seed, index, methods) for index in indices]
+        for future in as_completed(futures):
+            yield future.result()

@@ -1,0 +1,52 @@
+"""`beamopt stability`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+from rich.table import Table
+
+from beamopt.chart.sampling import Sample
+from beamopt.chart.stability import run_stability
+from beamopt.chart.summary import rates_of
+from beamopt.cli.progress import console, progress_bar
+
+__all__ = ["stability_command"]
+
+LINES = 20  # of progress, where there is no terminal to draw a bar on
+
+
+def stability_command(out: Path, samples: int, workers: int, seed: int, resume: bool) -> None:
+    """Make a stability map, show progress, and print the rates of success."""
+    started, first = perf_counter(), 0
+    with progress_bar("cases") as bar:
+        task = bar.add_task("map", total=samples, said="starting (compiles once on a machine)")
+
+        def show(sample: Sample, done: int) -> None:
+            nonlocal first
+            first = first or done - 1
+            case = sample.case
+            bar.update(task, completed=done, said=f"{case.kind.value} {case.size:g}")
+            if bar.disable and (done * LINES // samples) > ((done - 1) * LINES // samples):
+                left = (perf_counter() - started) / (done - first) * (samples - done)
+                console.print(f"{done:,} of {samples:,} cases, {left / 60:.1f} min left")
+
+        found = run_stability(
+            out, samples, workers=workers, seed=seed, resume=resume, callback=show
+        )
+    _report(found)
+    console.print(f"files: {out}/ (reading.md, stability.png, …)", soft_wrap=True, markup=False)
+
+
+def _report(samples: list[Sample]) -> None:
+    table = Table(title=f"{len(samples):,} random sections under load")
+    for name in ("method", "success", "wrong tips", "undecided", "median [ms]"):
+        table.add_column(name, justify="left" if name == "method" else "right")
+    rows = [row for sample in samples for row in sample.rows]
+    for method in dict.fromkeys(row.method for row in rows):
+        rates = rates_of([row for row in rows if row.method == method])
+        undecided = str(rates.cases - rates.decided)
+        shares = (f"{rates.success:.1%}", f"{rates.wrong_tips:.1%}", undecided)
+        table.add_row(method, *shares, f"{1e3 * rates.seconds:.3g}")
+    console.print(table)
