@@ -215,3 +215,13 @@ def test_a_tip_that_is_given_balances(
         return
     off = np.abs(recomputed_tip(rod, found) - found.tips[0]).max()
     assert off < 5 * found.error[0] + 1e-6
+
+
+@pytest.mark.parametrize("turns", [1.9, 2.0])
+def test_a_coil_of_two_turns_leaves_its_plane(turns: float) -> None:
+    """Rolled up further than a circle by a moment, a rod that twists easily is not stable."""
+    law = SectionLaw(np.diag([1.0, 1.0, 0.7]), np.zeros((3, 3)), np.zeros((3, 3)), (0, 1, 2))
+    end = PointLoad(moment=np.array([0.0, 2 * np.pi * turns, 0.0]))
+    rod = Rod((Segment(1.0, law, end=end),))
+    found = StrainModes(direct=False).solve(rod, rod.rest[None], 12)
+    assert found.status == (RodStatus.BUCKLED,)
