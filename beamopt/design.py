@@ -200,8 +200,8 @@ class Design(Model):
     @cached_property
     def values(self) -> SectionValues:
         """What the rod needs to know of the section."""
-        stiff = "stiff" if self.rod.rung in ("arc", "chain") else ""
-        if not self.loaded_rod.loads.any or "stiff" in (self.rod.twist, stiff):
+        may_climb = self.loaded_rod.loads.any and self.rod.rung in ("auto", "loaded")
+        if not may_climb or self.rod.twist == "stiff":
             return SectionValues(self.moments)
         grid, labels = self.section.grid, self.section.labels
         known = section_saint_venant(grid, labels, self.loaded_rod.poissons_ratio)
