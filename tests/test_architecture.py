@@ -44,6 +44,10 @@ FLOORS = [
     ["femcheck.continuation"],
     ["femcheck.check", "femcheck.picture"],
     ["femcheck.prediction"],
+    ["femcheck.models"],
+    ["femcheck.chart"],
+    ["femcheck.accuracy", "femcheck.stability", "femcheck.regression"],
+    ["femcheck.report"],
     ["femcheck.cli"],
     ["femcheck"],
 ]

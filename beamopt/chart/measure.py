@@ -14,7 +14,6 @@ from beamopt.arrays import FloatArray
 from beamopt.chart.methods import limited
 from beamopt.chart.workload import Workload
 from beamopt.errors import InputError
-from beamopt.rod.chain import chain_tips
 from beamopt.rod.ladder import Rung
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.pressure_tree import parents_on_grid
@@ -142,13 +141,9 @@ def _fastest(solve: Callable[[], object], left: float, limits: Limits) -> tuple[
 def measure_rungs(load: Workload, reference: Reference, limits: Limits) -> Iterator[Measured]:
     """The ladder's lower rungs: without loads, the arc also without what varies along the rod."""
     model, section, pressures, n = load.model, load.section, load.pressures, len(load.rest)
-    chain = model.on(Rung.CHAIN)
-    position, rotation = chain_tips(load.rod, load.rest)
-    # tips of rungs are material centroids, those of methods the axis: the same on the chain
-    from_axis = chain.tips(section, pressures).positions - position
-    beside = np.einsum("nij,ni->nj", rotation, from_axis)
+    # tips of rungs are material centroids, those of methods the axis
     solution = reference.solution
-    centroids = solution.tips + np.einsum("nij,nj->ni", solution.rotations, beside)
+    centroids = model.centroids(section, solution.tips, solution.rotations)
     for rung in (Rung.ARC, Rung.CHAIN):
         lower = model.on(rung)
         tips = lower.tips(section, pressures).positions

@@ -166,14 +166,21 @@ class RodModel:
         if self.rung is Rung.ARC:
             return _all_found(self.arcs(section.moments, pressures))
         rod, rest = self.rod(section), self.rest(section, pressures)
-        beside = self._beside(section)[-1]
         if self.rung is Rung.CHAIN:
-            position, rotation = chain_tips(rod, rest)
-            return _all_found(position + rotation @ beside)
+            return _all_found(self.centroids(section, *chain_tips(rod, rest)))
         found = solve_rod(
             rod, rest, self.tolerance, parents, all_or_none=all_or_none, method=self.method
         )
-        return Tips(found.tips + found.rotations @ beside, found.status)
+        return Tips(self.centroids(section, found.tips, found.rotations), found.status)
+
+    def centroids(
+        self, section: SectionValues, position: FloatArray, rotation: FloatArray
+    ) -> FloatArray:
+        """(n, 3) material centroids of the tip where its axis is at `position` (n, 3) [mm].
+
+        rotation : (n, 3, 3) of the tip's section.
+        """
+        return np.asarray(position + rotation @ self._beside(section)[-1])
 
     def arcs(self, moments: Moments, pressures: FloatArray) -> FloatArray:
         """(…, n, 3) tips of the rods of one section or a batch (…), all of them arcs."""

@@ -1,4 +1,4 @@
-"""Processes for searches that do not depend on each other."""
+"""Processes for work that does not depend on each other's, or none."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import wait
+from typing import Any
 
 from beamopt.provenance import THREAD_SETTINGS
 
-__all__ = ["processes"]
+__all__ = ["InProcess", "in_process", "processes"]
 
 
 @contextmanager
@@ -30,6 +31,25 @@ def processes(workers: int) -> Iterator[Executor]:
         pool.shutdown(cancel_futures=True)
         for name, value in before.items():
             os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+@contextmanager
+def in_process(workers: int) -> Iterator[Executor]:
+    """No processes: whatever is submitted is done at once, here, one after the other."""
+    yield InProcess()
+
+
+class InProcess(Executor):
+    """What is submitted is done at once, in this process."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Do it; the future is done."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
 
 def _follow_first_process() -> None:

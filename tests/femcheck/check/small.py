@@ -1,9 +1,6 @@
 """A check that takes seconds: a disc with three round chambers, as coarse as its outline allows."""
 
 import json
-from collections.abc import Iterator
-from concurrent.futures import Executor, Future
-from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -14,9 +11,12 @@ from beamopt.bundled import bundled_scenes
 from beamopt.design import Design
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
+from beamopt.study.pool import in_process
 from femcheck.check.options import CheckOptions
 from femcheck.check.subject import Subject
 from femcheck.mesh.geo import SectionSizes
+
+here = in_process
 
 SEALED = bundled_scenes()["sealed-section"].with_name("sealed_section.json")
 SIZES = SectionSizes(factor=3.0, growth=5.0)
@@ -60,23 +60,6 @@ def small_options(**changes: Any) -> CheckOptions:
 def quick_options(**changes: Any) -> CheckOptions:
     """Of the linear tetrahedron: wrong and fast, where it is not the answer that is looked at."""
     return small_options(**({"element": "tet4"} | changes))
-
-
-class Here(Executor):
-    """Runs what it is given at once, in this process."""
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except BaseException as error:
-            future.set_exception(error)
-        return future
-
-
-@contextmanager
-def here(workers: int) -> Iterator[Executor]:
-    yield Here()
 
 
 def kept_files(folder: Path, pictures: bool = False) -> dict[str, bytes]:

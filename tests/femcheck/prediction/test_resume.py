@@ -18,14 +18,14 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
-from beamopt.study.pool import processes
+from beamopt.study.pool import InProcess, processes
 from femcheck.continuation.outcome import Status
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.kept import ray_file, read_ray, write_ray
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import RayResult, trace_ray
 from femcheck.solid.winding import Wound
-from tests.femcheck.check.small import Here, kept_files
+from tests.femcheck.check.small import kept_files
 from tests.femcheck.prediction.small import predict, soft_subject
 
 pytestmark = pytest.mark.usefixtures("undrawn")
@@ -111,7 +111,7 @@ def test_killed_in_the_middle(limited: Done, copied: Path) -> None:
     assert kept_files(copied) == kept_files(limited[1])
 
 
-class Dying(Here):
+class Dying(InProcess):
     """A pool whose process dies under certain rays, as a pool of processes reports it."""
 
     def __init__(self, deadly: set[tuple[float, ...]]) -> None:

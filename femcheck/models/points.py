@@ -1,0 +1,55 @@
+"""Pressure combinations that need not lie on a grid, each solved from rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+
+from beamopt.arrays import FloatArray
+from femcheck.check.case import Case, CaseResult, Solid, solve_case, stopped
+
+__all__ = ["PointKey", "PointWork"]
+
+PointKey = tuple[int, int]
+"""The number of a solid, and the row of a combination."""
+
+
+@dataclass
+class PointWork:
+    """What is to be solved; see `femcheck.check.work`.
+
+    solids : of one mesh; each begins at the shapes of the one before.
+    pressures : (n, 3) [kPa]. seconds : time limit of a case [s].
+    """
+
+    solids: Sequence[Solid]
+    pressures: FloatArray
+    seconds: float
+    results: dict[PointKey, CaseResult] = field(default_factory=dict)
+
+    @property
+    def keys(self) -> list[PointKey]:
+        """Solid by solid."""
+        rows = range(len(self.pressures))
+        return [(number, row) for number in range(len(self.solids)) for row in rows]
+
+    def begin(self, executor: Executor, waiting: Sequence[PointKey]) -> bool:
+        """Nothing comes before the cases."""
+        return True
+
+    def is_ready(self, key: PointKey) -> bool:
+        """As soon as the solid before has its shape."""
+        number, row = key
+        return number == 0 or (number - 1, row) in self.results
+
+    def submit(self, executor: Executor, key: PointKey) -> Future[CaseResult]:
+        """Have a case solved."""
+        number, row = key
+        guess = None if number == 0 else self.results[number - 1, row].shape
+        case = Case(self.solids[number], self.pressures[row], guess, None, self.seconds)
+        return executor.submit(solve_case, case)
+
+    def stopped(self, key: PointKey) -> CaseResult:
+        """The result of a case whose process died."""
+        return stopped()

@@ -1,0 +1,89 @@
+"""What a model replies: a tip or a reason for every combination, and what they cost."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.arrays import FloatArray
+from femcheck.models.question import Question
+
+__all__ = ["FOUND", "Model", "Reply", "cpu_seconds", "nothing"]
+
+FOUND = "converged"
+
+
+@dataclass(frozen=True, eq=False)
+class Reply:
+    """Tips of a question.
+
+    tips : (n, 3) [mm], the base's material centroid at the origin; NaN without an equilibrium.
+    reasons : n texts: `FOUND`, or why there is no tip.
+    unknowns : of the discretisation; 0 for a closed form.
+    size : what was meshed, for people; "" where nothing was.
+    """
+
+    tips: FloatArray
+    reasons: tuple[str, ...]
+    unknowns: int = 0
+    size: str = ""
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """(n,) where there is a tip."""
+        return np.array([reason == FOUND for reason in self.reasons], dtype=np.bool_)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether every combination has a tip."""
+        return bool(self.found.all())
+
+    @property
+    def reason(self) -> str:
+        """The commonest reason why there is no tip; `FOUND` where all are there."""
+        wrong = Counter(reason for reason in self.reasons if reason != FOUND)
+        return wrong.most_common(1)[0][0] if wrong else FOUND
+
+    def away(self, tips: FloatArray) -> FloatArray:
+        """(n,) distances from other tips (n, 3) [mm]; NaN where either has none."""
+        return np.asarray(np.linalg.norm(self.tips - tips, axis=1))
+
+
+class Model(Protocol):
+    """A way to answer: a rung of the ladder at one resolution."""
+
+    @property
+    def family(self) -> str:
+        """What it is called; models of one family differ in resolution alone."""
+        ...
+
+    @property
+    def resolution(self) -> str:
+        """How fine it is, for people."""
+        ...
+
+    def refuses(self, question: Question) -> str | None:
+        """Why it can not be asked; None where it can."""
+        ...
+
+    def reply(self, question: Question, workers: int = 0) -> Reply:
+        """Its tips, with so many processes; 0 stays in this one."""
+        ...
+
+
+def nothing(question: Question, reasons: str | Sequence[str]) -> Reply:
+    """No tip at all, and why."""
+    n = len(question.pressures)
+    said = (reasons,) * n if isinstance(reasons, str) else tuple(reasons)
+    return Reply(np.full((n, 3), np.nan), said)
+
+
+def cpu_seconds() -> float:
+    """Processor time of this process and of those it waited for [s]."""
+    return float(sum(os.times()[:4]))
