@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from beamopt.chart.cases import case_of
 from beamopt.chart.sampling import Row, Sample
 from beamopt.chart.verdict import Verdict, Witness
-from beamopt.errors import InputError
+from beamopt.line_journal import LineJournal
 from beamopt.rod.status import RodStatus
 
 __all__ = ["Journal"]
@@ -30,33 +29,17 @@ class Journal:
 
     def __init__(self, path: Path, asked: dict[str, Any]) -> None:
         self.path = path
-        self.asked = {"schema": SCHEMA, **asked}
-        self.samples: dict[int, Sample] = {}
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.exists() else []
-        whole = [line for line in lines if line.endswith("\n")]
-        if not whole:
-            path.write_text(json.dumps(self.asked) + "\n", encoding="utf-8")
-            return
-        self._read(whole)
-        if len(whole) < len(lines):  # a kill left half a line
-            path.write_text("".join(whole), encoding="utf-8")
-
-    def _read(self, lines: list[str]) -> None:
+        self._lines = LineJournal(path, {"schema": SCHEMA, **asked}, "stability map")
         try:
-            head, *samples = (json.loads(line) for line in lines)
-            read = [_sample(self.asked["seed"], data) for data in samples]
+            read = [_sample(asked["seed"], data) for data in self._lines.entries]
         except (ValueError, KeyError, TypeError, AttributeError):
-            raise InputError(self.path, "", None, "no journal of a stability map") from None
-        if head != self.asked:
-            said = "the map there is of another seed, or of other methods"
-            raise InputError(self.path, "", None, said)
+            raise self._lines.damaged() from None
         self.samples = {sample.case.index: sample for sample in read}
 
     def add(self, sample: Sample) -> None:
         """Keep a sample."""
         self.samples[sample.case.index] = sample
-        with self.path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps(_data(sample)) + "\n")
+        self._lines.add(_data(sample))
 
 
 def _data(sample: Sample) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,24 +30,27 @@ class RunRequest:
     """The options as they were given."""
 
     designs: list[Path]
-    out: Path | None
-    seal: float | None
-    agree: str
-    law: str
-    nu: float | None
-    constants: list[str]
-    wind: str | None
-    winding: float | None
-    slenderness: float | None
-    workers: int
-    layers: int | None
-    size: float
-    element: str
-    solver: str
-    seconds: float
-    gmsh: str | None
-    gmsh_seconds: float
-    resume: bool
+    out: Path | None = None
+    seal: float | None = None
+    agree: str = "5%"
+    law: str = RIGID
+    nu: float | None = None
+    constants: list[str] = field(default_factory=list)
+    wind: str | None = None
+    winding: float | None = None
+    slenderness: float | None = None
+    workers: int = 2
+    layers: int | None = None
+    size: float = 1.0
+    element: str = "wedge18"
+    solver: str = "auto"
+    seconds: float = 600.0
+    gmsh: str | None = None
+    gmsh_seconds: float = 60.0
+    resume: bool = False
+    accuracy: str | None = None
+    rung: str = "auto"
+    budget: float = np.inf
 
 
 def options_of(request: RunRequest) -> CheckOptions | PredictionOptions:

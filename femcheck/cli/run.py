@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -30,10 +29,11 @@ from femcheck.check.subject import (
 from femcheck.cli.prediction import report_prediction
 from femcheck.cli.report import report
 from femcheck.cli.request import RunRequest, options_of
+from femcheck.models.named import name_of
 from femcheck.prediction.options import PredictionOptions
 from femcheck.prediction.run import predict_design
 
-__all__ = ["run_command"]
+__all__ = ["folders_of", "refuse_twins", "run_command", "subject_of"]
 
 Result = TypeVar("Result")
 
@@ -41,8 +41,15 @@ Result = TypeVar("Result")
 def run_command(request: RunRequest) -> None:
     """Check every design, say what was found, and end with 1 unless all agree."""
     options = options_of(request)
+    if request.accuracy is not None:
+        from femcheck.cli.accuracy import accuracy_command
+
+        accuracy_command(request, options)
+        return
+    if request.rung != "auto":
+        raise InputError("--rung", "", request.rung, "goes with --accuracy")
     subjects = _subjects(request)
-    folders = _folders(request, subjects)
+    folders = folders_of(request, [subject.name for subject in subjects])
     for subject, folder in zip(subjects, folders, strict=True):  # before any work
         if isinstance(options, PredictionOptions):
             _check_material(options, subject)
@@ -101,27 +108,26 @@ def _subjects(request: RunRequest) -> list[Subject]:
     for path in request.designs:
         file = path / "best.json" if path.is_dir() else path
         design = load_design(file)
-        name = _name(path, design)
-        subjects.append(_subject(file, name, design, request.seal, request.slenderness))
-    names = [subject.name for subject in subjects]
+        name = name_of(path, design)
+        subjects.append(subject_of(file, name, design, request.seal, request.slenderness))
+    refuse_twins(request, [subject.name for subject in subjects])
+    return subjects
+
+
+def refuse_twins(request: RunRequest, names: Sequence[str]) -> None:
+    """Refuse designs of one name.
+
+    Raises
+    ------
+    InputError : two of them would be kept in the same place.
+    """
     for number, name in enumerate(names):
         if name in names[:number]:
             said = f"a second design called {name}; results are kept by name: rename a file"
             raise InputError(request.designs[number], "", None, said)
-    return subjects
 
 
-def _name(path: Path, design: Design) -> str:
-    """A run's scene and seed; another design's file name."""
-    scene, seed = design.notes.get("scene"), design.notes.get("seed")
-    of_run = path.is_dir() or path.stem in ("best", "final")
-    named = isinstance(scene, str) and re.fullmatch(r"[\w-]+", scene) and isinstance(seed, int)
-    if of_run and named:
-        return f"{scene}-{seed}-final" if path.stem == "final" else f"{scene}-{seed}"
-    return path.resolve().name if path.is_dir() else path.stem
-
-
-def _subject(
+def subject_of(
     file: Path, name: str, design: Design, skin: float | None, slenderness: float | None
 ) -> Subject:
     """As it is to be checked: of the length that is asked for, and sealed."""
@@ -154,9 +160,8 @@ def _sealed(file: Path, name: str, design: Design, skin: float | None) -> Subjec
     return Subject(name, design)
 
 
-def _folders(request: RunRequest, subjects: list[Subject]) -> list[Path]:
+def folders_of(request: RunRequest, names: Sequence[str]) -> list[Path]:
     """One design: the folder itself; several: one below it each."""
-    if request.out is not None and len(subjects) == 1:
+    if request.out is not None and len(names) == 1:
         return [request.out]
-    above = request.out or Path("checks")
-    return [above / subject.name for subject in subjects]
+    return [(request.out or Path("checks")) / name for name in names]

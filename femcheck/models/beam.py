@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from beamopt.chart.methods import all_methods
 from beamopt.design import Design
 from beamopt.rod.ladder import RodModel, Rung, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.status import RodStatus
-from femcheck.models.reply import FOUND, Reply, nothing
 from femcheck.models.question import Question
+from femcheck.models.reply import FOUND, Reply, nothing
 
 __all__ = ["ArcOnGrid", "RodByMethod", "RodOnOutline", "on_grid"]
 
@@ -52,7 +53,13 @@ def on_grid(design: Design, radial: int, angular: int) -> Design:
     grid = design.grid.model_copy(update={"radial": radial, "angular": angular})
     walls = design.wall_elements
     scaled = 2 * max(round(walls * radial / design.grid.radial / 2), min(walls, 1))
-    return design.model_copy(update={"grid": grid, "wall_elements": scaled})
+    return _rebuilt(design, grid=grid.model_dump(), wall_elements=scaled)
+
+
+def _rebuilt(design: Design, **changes: Any) -> Design:
+    """A design that knows nothing yet of its section, with some keys changed."""
+    data = design.model_dump(by_alias=True, exclude_none=True)
+    return Design.model_validate(data | changes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,13 +86,12 @@ class RodOnOutline:
         return None
 
     def reply(self, question: Question, workers: int = 0) -> Reply:
-        """Of the design as it is; copied, so that nothing known before makes it cheap."""
-        design = question.design.model_copy()
+        """Of the design as it is, read anew: nothing known before makes it cheap."""
+        design = question.design
+        rules = design.rod.model_dump()
         if self.tolerance is not None:
-            share = self.tolerance / design.actuator.length
-            rules = design.rod.model_copy(update={"tolerance": min(share, 0.1)})
-            design = design.model_copy(update={"rod": rules})
-        return _rod(question, design, None)
+            rules["tolerance"] = min(self.tolerance / design.actuator.length, 0.1)
+        return _rod(question, _rebuilt(design, rod=rules), None)
 
 
 def _rod(question: Question, design: Design, values: SectionValues | None) -> Reply:
@@ -135,4 +141,4 @@ class RodByMethod:
         rod, rest = model.rod(values), model.rest(values, question.pressures)
         found = method.solve(rod, rest, self.count)
         tips = model.centroids(values, found.tips, found.rotations)
-        return _answered(Tips(tips, found.status))
+        return replace(_answered(Tips(tips, found.status)), errors=found.error)

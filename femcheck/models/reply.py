@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,12 +28,14 @@ class Reply:
     reasons : n texts: `FOUND`, or why there is no tip.
     unknowns : of the discretisation; 0 for a closed form.
     size : what was meshed, for people; "" where nothing was.
+    errors : (n,) the model's own estimate of its tips' error [mm]; None where it has none.
     """
 
     tips: FloatArray
     reasons: tuple[str, ...]
     unknowns: int = 0
     size: str = ""
+    errors: FloatArray | None = None
 
     @property
     def found(self) -> NDArray[np.bool_]:
@@ -86,4 +89,5 @@ def nothing(question: Question, reasons: str | Sequence[str]) -> Reply:
 
 def cpu_seconds() -> float:
     """Processor time of this process and of those it waited for [s]."""
-    return float(sum(os.times()[:4]))
+    children = os.times()  # to a hundredth of a second
+    return time.process_time() + children.children_user + children.children_system

@@ -47,12 +47,14 @@ class SolidModel:
 
     element : its name. layers : along the actuator. size : of the triangles, see `SectionSizes`.
     penalties : c of the rigid-section law, two of them; other laws have none.
+    grading : thickness of the middle layers over that of the end ones; None is the question's.
     """
 
     element: str = DEFAULT_ELEMENT
     layers: int = 4
     size: float = 2.0
     penalties: tuple[float, float] = PENALTIES
+    grading: float | None = None
 
     @property
     def family(self) -> str:
@@ -63,6 +65,8 @@ class SolidModel:
     def resolution(self) -> str:
         """Layers and size, and c where it is not the usual one."""
         said = f"{self.layers} layers, size {self.size:g}"
+        if self.grading is not None:
+            said += f", graded {self.grading:g}"
         return said if self.penalties == PENALTIES else f"{said}, c to {self.penalties[1]:g}"
 
     def refuses(self, question: Question) -> str | None:
@@ -70,16 +74,15 @@ class SolidModel:
         missing = question.no_solid
         if missing is not None:
             return missing
-        law = self.options(question.law).law
-        if not question.is_of_the_beam and self._is_mixed(question):
-            if not ELEMENTS[self.element].has_pair:
-                return f"{self.element} has no stable pair for an incompressible {law}"
+        if self._is_mixed(question) and not ELEMENTS[self.element].has_pair:
+            return f"{self.element} has no stable pair for an incompressible material"
         return None
 
     def options(self, law: LawChoice) -> LawChoice:
         """The law's options with this model's mesh."""
         sizes = replace(law.sizes, factor=self.size)
-        changed = replace(law, element=DEFAULT_ELEMENT, layers=self.layers, sizes=sizes)
+        graded = law.grading if self.grading is None else self.grading
+        changed = replace(law, layers=self.layers, sizes=sizes, grading=graded)
         if isinstance(changed, CheckOptions):
             return replace(changed, penalties=self.penalties)
         return changed

@@ -220,7 +220,7 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
 def test_another_map_is_not_gone_on_with(tmp_path: Path) -> None:
     path = tmp_path / JOURNAL
     Journal(path, {"seed": 1, "methods": list(FEW)})
-    with pytest.raises(InputError, match="of another seed"):
+    with pytest.raises(InputError, match="of another question"):
         run_stability(tmp_path, 1, methods=FEW, resume=True)
     path.write_text("nonsense\n")
     with pytest.raises(InputError, match="no journal"):

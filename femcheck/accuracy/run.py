@@ -1,0 +1,149 @@
+"""Answers to an accuracy as a folder: tips with estimates, what was tried, what it cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.errors import NoEquilibriumError
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.line_journal import LineJournal
+from beamopt.provenance import provenance
+from femcheck.accuracy.within import (
+    Ending,
+    Progress,
+    RungChoice,
+    Within,
+    answer_within,
+    check_asked,
+)
+from femcheck.chart.kept import asked_of, measured_in
+from femcheck.chart.measure import Measured, key_of, written
+from femcheck.check.folder import PACKAGES
+from femcheck.models.question import Question
+from femcheck.models.reply import Model
+
+__all__ = ["beam_difference", "run_accuracy"]
+
+JOURNAL = "journal.jsonl"
+NAMES = (JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json")
+TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status"
+TRIED = "model,unknowns,size,found,of"
+DIGITS = 6  # of a millimetre
+
+
+@dataclass(frozen=True, eq=False)
+class _Journal:
+    """Replies on disk."""
+
+    lines: LineJournal
+    known: dict[str, Measured]
+
+    def find(self, model: Model) -> Measured | None:
+        return self.known.get(key_of(model))
+
+    def keep(self, measured: Measured) -> None:
+        self.lines.add(written(measured))
+
+
+def run_accuracy(
+    question: Question,
+    accuracy: float,
+    out: Path,
+    *,
+    rung: RungChoice = "auto",
+    most_seconds: float = np.inf,
+    workers: int = 0,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Within:
+    """Answer to `accuracy` [mm] and write what was found to `out`; see `answer_within`.
+
+    resume : go on with what is in `out`.
+
+    Raises
+    ------
+    InputError : `out` holds something else, or can not be written; see also `answer_within`.
+    """
+    check_asked(question, accuracy, rung)
+    claim_folder(out, JOURNAL, resume=resume)
+    clear_leftovers(out, NAMES)
+    asked = asked_of(question) | {"schema": "femcheck-accuracy/1", "accuracy": accuracy}
+    lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
+    found = answer_within(
+        question,
+        accuracy,
+        rung=rung,
+        most_seconds=most_seconds,
+        workers=workers,
+        progress=progress,
+        kept=_Journal(lines, measured_in(lines)),
+    )
+    _write(found, out)
+    return found
+
+
+def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
+    """The design's own tips (n, 3) and their distances (n,) from what was found [mm]."""
+    question = found.question
+    try:
+        beam = question.design.tips(question.pressures)
+    except NoEquilibriumError:
+        beam = np.full((len(question.pressures), 3), np.nan)
+    if found.reply is None:
+        return beam, np.full(len(beam), np.nan)
+    return beam, found.reply.away(beam)
+
+
+def _write(found: Within, out: Path) -> None:
+    found.question.design.save(out / "design.json")
+    write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
+    tried = [
+        (f"{one.model.family} {one.model.resolution}".strip(), one.reply.unknowns, one.reply.size,
+         int(one.reply.found.sum()), len(one.reply.reasons))
+        for one in found.tried
+    ]  # fmt: skip
+    write_atomic(out / "tried.csv", csv_text(TRIED, tried))
+    times = [(row[0], one.seconds, "s") for row, one in zip(tried, found.tried, strict=True)]
+    write_atomic(out / "timing.csv", csv_text("what,value,unit", times))
+    write_atomic(out / "summary.json", json_text(_summary(found)))
+    write_atomic(out / "provenance.json", json_text(provenance(PACKAGES)))
+
+
+def _tips(found: Within) -> Iterator[tuple[object, ...]]:
+    beam, difference = beam_difference(found)
+    if found.reply is None:
+        return
+    rows = zip(
+        found.question.pressures.tolist(),
+        found.reply.tips,
+        found.estimate,
+        beam,
+        difference,
+        found.reply.reasons,
+        strict=True,
+    )
+    for pressures, tip, estimate, own, away, reason in rows:
+        numbers = [*tip, estimate, *own, away]
+        rounded = [None if np.isnan(x) else round(float(x), DIGITS) + 0.0 for x in numbers]
+        yield (*pressures, *rounded, reason)
+
+
+def _summary(found: Within) -> dict[str, Any]:
+    worst = found.worst
+    return {
+        "design": found.question.name,
+        "law": found.question.law_text,
+        "accuracy_mm": found.accuracy,
+        "ending": found.ending.value,
+        "reached": found.ending is Ending.REACHED,
+        "chosen": found.chosen,
+        "reason": found.reason,
+        "worst_estimate_mm": None if np.isnan(worst) else float(f"{worst:.4g}"),
+    }

@@ -1,0 +1,138 @@
+"""What a chart says: every model's error and cost, and the cheapest for an accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from femcheck.chart.lineup import line_up
+from femcheck.chart.measure import Measured, key_of
+from femcheck.chart.reference import Reference
+from femcheck.models.question import Question
+from femcheck.models.solid import SolidModel
+
+__all__ = ["ACCURACIES", "Chart", "Row"]
+
+ACCURACIES = (1.0, 0.1, 0.01)
+"""[mm]"""
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A model's place on the chart.
+
+    error : largest distance of a tip from the reference [mm]; NaN without any, or any reference.
+    missing : tips that the reference has and the model has not.
+    """
+
+    measured: Measured
+    error: float
+    missing: int
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it has every tip that there is."""
+        return self.missing == 0 and bool(np.isfinite(self.error))
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """All rows of a question. reference : None where nothing could be extrapolated."""
+
+    question: Question
+    rows: tuple[Row, ...]
+    reference: Reference | None
+
+    @classmethod
+    def of(
+        cls, question: Question, measured: Sequence[Measured], reference: Reference | None
+    ) -> Chart:
+        """Errors of what was measured."""
+        return cls(question, tuple(_row(one, reference) for one in measured), reference)
+
+    @property
+    def uncertainty(self) -> float:
+        """Of the reference [mm]; infinite where there is none."""
+        return np.inf if self.reference is None else self.reference.uncertainty
+
+    def within(self, accuracy: float) -> list[Row]:
+        """Rows with all tips and an error of at most `accuracy` [mm], the cheapest first."""
+        near = [row for row in self.rows if row.is_whole and row.error <= accuracy]
+        return sorted(near, key=lambda row: row.measured.seconds)
+
+    def cheapest(self, accuracy: float, family: str | None = None) -> Row | None:
+        """The cheapest within `accuracy` [mm], of all or of one family; None where none is."""
+        near = self.within(accuracy)
+        return next((row for row in near if family in (None, row.measured.family)), None)
+
+    def solids(self, element: str) -> Iterator[tuple[SolidModel, Row]]:
+        """The solids of an element with their rows, from coarse to fine."""
+        rows = {f"{row.measured.family} {row.measured.resolution}": row for row in self.rows}
+        for series in line_up(self.question, [element]):
+            for model in series.all:
+                if isinstance(model, SolidModel) and key_of(model) in rows:
+                    yield model, rows[key_of(model)]
+
+    def sentences(self) -> Iterator[str]:
+        """What is to be read off it."""
+        yield (
+            f"{self.question.name}, {self.question.law_text}: "
+            f"{len(self.question.pressures)} tips, error against processor time."
+        )
+        yield from self._of_reference()
+        for accuracy in ACCURACIES:
+            if accuracy < self.uncertainty:
+                yield f"Within {accuracy:g} mm: the reference does not tell."
+                continue
+            best, solid = self.cheapest(accuracy), self._cheapest_solid(accuracy)
+            if best is None:
+                yield f"Within {accuracy:g} mm: none of them."
+                continue
+            said = f"Within {accuracy:g} mm: {_said(best)}"
+            if solid is not None and solid is not best:
+                said += f"; of the solids {_said(solid)}"
+            yield said + "."
+
+    def _of_reference(self) -> Iterator[str]:
+        reference = self.reference
+        if reference is None:
+            yield "No family of elements was solved finely enough to extrapolate from."
+            return
+        yield f"Reference: {reference.family}, ± {reference.uncertainty:.2g} mm."
+        for other in reference.others:
+            apart, band = reference.apart(other), reference.band + other.band
+            worst = int(np.nanargmax(apart))
+            verdict = "agrees" if reference.agrees(other) else "DISAGREES"
+            yield (
+                f"{other.family} extrapolates to within {apart[worst]:.2g} mm of it, "
+                f"bands together {band[worst]:.2g} mm: {verdict}."
+            )
+
+    def _cheapest_solid(self, accuracy: float) -> Row | None:
+        solids = (row for row in self.within(accuracy) if row.measured.reply.unknowns)
+        return next(solids, None)
+
+
+def _said(row: Row) -> str:
+    one = row.measured
+    name = f"{one.family} {one.resolution}".strip()
+    return f"{name} in {seconds_text(one.seconds)} (error {row.error:.2g} mm)"
+
+
+def seconds_text(seconds: float) -> str:
+    """In ms, s or min."""
+    if seconds < 1:
+        return f"{1e3 * seconds:.3g} ms"
+    return f"{seconds:.3g} s" if seconds < 120 else f"{seconds / 60:.3g} min"
+
+
+def _row(measured: Measured, reference: Reference | None) -> Row:
+    if reference is None:
+        return Row(measured, np.nan, len(measured.reply.reasons))
+    there = np.isfinite(reference.tips[:, 0])
+    away = measured.reply.away(reference.tips)
+    known = np.isfinite(away)
+    error = float(away[known].max()) if known.any() else np.nan
+    return Row(measured, error, int((there & ~known).sum()))

@@ -1,0 +1,108 @@
+"""A chart read back from its folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.design import Design
+from beamopt.errors import InputError
+from beamopt.line_journal import LineJournal
+from beamopt.model import parse
+from femcheck.chart.chart import Chart
+from femcheck.chart.lineup import line_up
+from femcheck.chart.measure import Measured, key_of, read
+from femcheck.chart.reference import reference_of
+from femcheck.check.options import CheckOptions
+from femcheck.material.fibre import Thread
+from femcheck.mesh.geo import SectionSizes
+from femcheck.models.question import LawChoice, Question
+from femcheck.prediction.options import PredictionOptions
+from femcheck.solid.winding import Wound
+
+__all__ = ["JOURNAL", "KIND", "asked_of", "measured_in", "read_chart"]
+
+JOURNAL, KIND = "journal.jsonl", "chart"
+SCHEMA = "femcheck-chart/1"
+
+
+def asked_of(question: Question) -> dict[str, Any]:
+    """What a journal's replies depend on."""
+    return {
+        "schema": SCHEMA,
+        "name": question.name,
+        "design": question.design.json(),
+        "law": question.law.question,
+        "pressures": question.pressures.tolist(),
+    }
+
+
+def measured_in(journal: LineJournal) -> dict[str, Measured]:
+    """Replies by model.
+
+    Raises
+    ------
+    InputError : the journal is damaged.
+    """
+    try:
+        return {line["model"]: read(line) for line in journal.entries}
+    except (KeyError, TypeError, ValueError):
+        raise journal.damaged() from None
+
+
+def read_chart(folder: Path) -> Chart:
+    """The chart of a folder.
+
+    Raises
+    ------
+    InputError : it is no chart's, or damaged.
+    """
+    file = folder / JOURNAL
+    try:
+        with file.open(encoding="utf-8") as stream:
+            asked = json.loads(stream.readline())
+        if asked["schema"] != SCHEMA:
+            raise ValueError
+        question = _question(asked, file)
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(file, "", None, "no journal of a chart") from None
+    measured = measured_in(LineJournal(file, asked, KIND))
+    series = [
+        one for one in line_up(question) if any(key_of(model) in measured for model in one.all)
+    ]
+    known = [
+        measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
+    ]
+    return Chart.of(question, known, reference_of(question, series, measured))
+
+
+def _question(asked: dict[str, Any], file: Path) -> Question:
+    design = parse(Design, json.loads(asked["design"]), file)
+    return Question.of(
+        asked["name"], design, _law(asked["law"]), np.array(asked["pressures"], dtype=np.float64)
+    )
+
+
+def _law(asked: dict[str, Any]) -> LawChoice:
+    """Of `question` of the options."""
+    solid: dict[str, Any] = {
+        "element": asked["element"],
+        "layers": asked["layers"],
+        "grading": asked["grading"],
+        "sizes": SectionSizes(**asked["sizes"]),
+    }
+    if "penalties" in asked:
+        return CheckOptions(penalties=tuple(asked["penalties"]), **solid)
+    if asked["wound"] is not None:
+        wound = asked["wound"]
+        solid["wound"] = Wound(wound["where"])
+        solid["thread"] = Thread(wound["N_per_m"], wound["toe"])
+    return PredictionOptions(
+        law=asked["law"],
+        poisson_ratio=asked["poisson_ratio"],
+        constants=asked["constants"],
+        **solid,
+    )

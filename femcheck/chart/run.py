@@ -1,0 +1,161 @@
+"""Making a chart: every model asked once, each on a core of its own; a kill loses little."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from beamopt.errors import InputError
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import claim_folder
+from beamopt.line_journal import LineJournal
+from beamopt.plot.style import save_figure
+from beamopt.provenance import provenance
+from beamopt.study.pool import processes
+from femcheck.chart.chart import ACCURACIES, Chart, Row
+from femcheck.chart.figure import chart_figure
+from femcheck.chart.kept import JOURNAL, KIND, asked_of, measured_in
+from femcheck.chart.lineup import Series, line_up
+from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.chart.reference import reference_of
+from femcheck.check.folder import PACKAGES
+from femcheck.models.question import Question
+from femcheck.models.reply import Model, nothing
+
+__all__ = ["Budget", "run_chart"]
+
+CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status"
+CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
+GROWTH = 1.8  # a finer model of a series takes at least so many times as long
+
+Progress = Callable[[int, int, str], None]
+Pool = Callable[[int], AbstractContextManager[Executor]]
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """seconds : of processor time that a model may be expected to take; others are left out."""
+
+    seconds: float = 1800.0
+
+
+def run_chart(
+    question: Question,
+    out: Path,
+    *,
+    families: Sequence[str] | None = None,
+    budget: Budget | None = None,
+    workers: int = 1,
+    resume: bool = False,
+    progress: Progress | None = None,
+    pool: Pool = processes,
+) -> Chart:
+    """Ask all models and write table, figure, reading and provenance to `out`.
+
+    Parameters
+    ----------
+    families : of which models are asked; all if left out.
+    workers : models asked at once.
+    resume : go on with what is in `out`; where all is there, only the files are written anew.
+    progress : called with how many models are done, how many there are, and what was last.
+
+    Raises
+    ------
+    InputError : `out` holds something else, or can not be written; there is no such family.
+    """
+    series = line_up(question, families)
+    if not series:
+        raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
+    claim_folder(out, JOURNAL, (), resume=resume)
+    journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
+    measured = measured_in(journal)
+    total = sum(len(list(one.all)) for one in series)
+
+    def keep(one: Measured) -> None:
+        line = written(one)
+        measured[line["model"]] = one
+        journal.add(line)
+        if progress is not None:
+            progress(len(measured), total, line["model"])
+
+    if progress is not None:
+        progress(len(measured), total, "starting")
+    _ask(question, series, measured, budget or Budget(), lambda: pool(workers), workers, keep)
+    known = [measured[key_of(model)] for one in series for model in one.all]
+    chart = Chart.of(question, known, reference_of(question, series, measured))
+    _write(chart, out, workers)
+    return chart
+
+
+def _ask(
+    question: Question,
+    series: Sequence[Series],
+    measured: dict[str, Measured],
+    budget: Budget,
+    pool: Callable[[], AbstractContextManager[Executor]],
+    workers: int,
+    keep: Callable[[Measured], None],
+) -> None:
+    """Each series from coarse to fine; a finer model waits until its cost can be guessed."""
+    left = {one.family: [m for m in one.all if key_of(m) not in measured] for one in series}
+    running: dict[Future[Measured], tuple[str, Model]] = {}
+    with pool() as executor:
+        while any(left.values()) or running:
+            busy = {family for family, _ in running.values()}
+            for family in [name for name, waiting in left.items() if waiting]:
+                if len(running) >= workers or family in busy:
+                    continue
+                model = left[family].pop(0)
+                if _guessed(family, measured) > budget.seconds:
+                    keep(_left_out(question, model, budget))
+                    continue
+                running[executor.submit(measure, question, model)] = family, model
+            finished, _ = wait(running, return_when=FIRST_COMPLETED) if running else ((), ())
+            for future in finished:
+                running.pop(future)
+                keep(future.result())
+
+
+def _guessed(family: str, measured: dict[str, Measured]) -> float:
+    """Seconds that the next finer model of a family will take, at least."""
+    known = [one.seconds for one in measured.values() if one.family == family]
+    if not known:
+        return 0.0
+    if np.isnan(known[-1]):
+        return np.inf
+    grown = known[-1] / known[-2] if len(known) > 1 and known[-2] > 0 else GROWTH
+    return known[-1] * max(grown, 1.0)
+
+
+def _left_out(question: Question, model: Model, budget: Budget) -> Measured:
+    reason = f"left out: expected to take more than {budget.seconds:g} s"
+    return Measured(model.family, model.resolution, nothing(question, reason), float("nan"))
+
+
+def _write(chart: Chart, out: Path, workers: int) -> None:
+    write_atomic(out / "chart.csv", csv_text(CHART, [_cells(row) for row in chart.rows]))
+    best = [
+        (accuracy, one.measured.family, one.measured.resolution, one.error, one.measured.seconds)
+        for accuracy in ACCURACIES
+        if accuracy >= chart.uncertainty
+        for one in chart.within(accuracy)
+    ]
+    write_atomic(out / "cheapest.csv", csv_text(CHEAPEST, best))
+    write_atomic(out / "reading.md", "\n".join(f"- {line}" for line in chart.sentences()) + "\n")
+    said = {"workers": workers, "design": chart.question.name, "law": chart.question.law_text}
+    about = provenance(PACKAGES)
+    write_atomic(out / "provenance.json", json_text({**said, **about}))
+    save_figure(chart_figure(chart, about), out / "chart.svg", out / "chart.png")
+
+
+def _cells(row: Row) -> tuple[object, ...]:
+    one, reply = row.measured, row.measured.reply
+    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
+    found = int(reply.found.sum())
+    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
+    return (*cells, len(reply.reasons), reply.size or None, reply.reason)

@@ -1,0 +1,174 @@
+"""`femcheck run --accuracy`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from beamopt.cli.progress import console, progress_bar
+from beamopt.errors import InputError
+from beamopt.provenance import thread_settings
+from femcheck.accuracy.run import beam_difference, run_accuracy
+from femcheck.accuracy.within import Ending, RungChoice, Within
+from femcheck.chart.chart import seconds_text
+from femcheck.cli.request import RunRequest
+from femcheck.cli.run import folders_of, refuse_twins, subject_of
+from femcheck.models.named import named_design
+from femcheck.models.question import LawChoice, Question
+from femcheck.prediction.options import PredictionOptions
+from femcheck.solid.elements import DEFAULT_ELEMENT
+
+__all__ = ["accuracy_command", "accuracy_of"]
+
+RUNGS: tuple[RungChoice, ...] = ("auto", "beam", "solid")
+
+
+def accuracy_of(text: str) -> float:
+    """ "0.1mm", "0.1 mm" or "0.1" as millimetres.
+
+    Raises
+    ------
+    InputError : it is none above 0.
+    """
+    number = text.strip().removesuffix("mm").strip()
+    try:
+        value = float(number)
+    except ValueError:
+        value = np.nan
+    if not 0 < value < np.inf:
+        raise InputError("--accuracy", "", text, "a length above 0, as 0.1mm")
+    return value
+
+
+def accuracy_command(request: RunRequest, options: LawChoice) -> None:
+    """Answer every question to the accuracy; end with 1 unless all reach it and beams agree."""
+    rung, accuracy = _rung(request.rung), accuracy_of(request.accuracy or "")
+    for name, usual in (("layers", None), ("element", DEFAULT_ELEMENT), ("size", 1.0)):
+        value = getattr(request, name)
+        if value != usual:
+            raise InputError(f"--{name}", "", value, "chosen by --accuracy: leave it out")
+    questions = _questions(request, options)
+    folders = folders_of(request, [question.name for question in questions])
+    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
+    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    everything_holds = True
+    for question, folder in zip(questions, folders, strict=True):
+        found = _followed(question, accuracy, rung, folder, request)
+        _report(found, folder)
+        everything_holds = everything_holds and _holds(found, options.agree)
+    if not everything_holds:
+        raise typer.Exit(1)
+
+
+def _questions(request: RunRequest, options: LawChoice) -> list[Question]:
+    """Of designs, runs and scenes; loads are welcome, as long as the law is the beam's."""
+    questions = []
+    for source in request.designs:
+        name, design = named_design(str(source))
+        if request.seal is not None or request.slenderness is not None:
+            design = subject_of(source, name, design, request.seal, request.slenderness).design
+        if isinstance(options, PredictionOptions):
+            try:
+                options.law_for(design.actuator)
+            except InputError as error:
+                raise InputError(name, error.key, error.value, error.allowed) from None
+        questions.append(Question.of(name, design, options))
+    refuse_twins(request, [question.name for question in questions])
+    return questions
+
+
+def _rung(text: str) -> RungChoice:
+    for rung in RUNGS:
+        if rung == text:
+            return rung
+    raise InputError("--rung", "", text, f"one of {', '.join(RUNGS)}")
+
+
+def _followed(
+    question: Question, accuracy: float, rung: RungChoice, folder: Path, request: RunRequest
+) -> Within:
+    with progress_bar("models") as bar:
+        task = bar.add_task(escape(question.name), total=None, said="choosing")
+
+        def show(done: int, total: int, said: str) -> None:
+            bar.update(task, completed=done, total=total, said=said)
+
+        try:
+            return run_accuracy(
+                question,
+                accuracy,
+                folder,
+                rung=rung,
+                most_seconds=request.budget,
+                workers=request.workers,
+                resume=request.resume,
+                progress=show,
+            )
+        except InputError as error:
+            if error.key != "rung":
+                raise
+            raise InputError("--rung", "", error.value, error.allowed) from None
+
+
+def _holds(found: Within, agree: float) -> bool:
+    """Whether the accuracy was reached and the beam is near enough, as in a check."""
+    if found.ending is not Ending.REACHED or found.reply is None:
+        return False
+    beam, difference = beam_difference(found)
+    straight = np.array([0.0, 0.0, found.question.design.actuator.length])
+    moved = np.linalg.norm(beam - straight, axis=1)
+    allowed = np.maximum(agree * np.maximum(moved, 1e-2 * moved.max()), found.accuracy)
+    return bool((difference <= allowed).all())
+
+
+def _report(found: Within, folder: Path) -> None:
+    console.print(f"[bold]{escape(found.question.name)}[/]")
+    reached = "" if np.isnan(found.worst) else f": estimated error up to {found.worst:.2g} mm"
+    lines = [
+        ("law", found.question.law_text),
+        ("rung", found.reason),
+        ("chosen", f"{found.chosen}, {seconds_text(found.seconds)} of processor time in all"),
+        *(("tried", _tried(one)) for one in _described(found)),
+        (f"{found.accuracy:g} mm", f"{found.ending.value}{reached}"),
+        ("files", f"{folder}/ (tips.csv, tried.csv, summary.json, …)"),
+    ]
+    for name, text in lines:
+        console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)
+    if found.reply is not None:
+        console.print(_table(found))
+
+
+def _described(found: Within) -> list[tuple[str, str, float]]:
+    return [
+        (f"{one.model.family} {one.model.resolution}".strip(), one.reply.size, one.seconds)
+        for one in found.tried
+    ]
+
+
+def _tried(one: tuple[str, str, float]) -> str:
+    name, size, seconds = one
+    meshed = f" ({size})" if size else ""
+    return f"{name}{meshed}: {seconds_text(seconds)}"
+
+
+def _table(found: Within) -> Table:
+    assert found.reply is not None
+    _, difference = beam_difference(found)
+    table = Table(title=f"tips, {found.question.law_text}", title_justify="left")
+    for name in ("p1 [kPa]", "p2", "p3", "x [mm]", "y", "z", "± [mm]", "beam differs [mm]"):
+        table.add_column(name, justify="right")
+    table.add_column("status")
+    for row, pressures in enumerate(found.question.pressures.tolist()):
+        tip, estimate, away = found.reply.tips[row], found.estimate[row], difference[row]
+        table.add_row(
+            *(f"{value:g}" for value in pressures),
+            *("–" if np.isnan(x) else f"{x:.3f}" for x in tip),
+            "–" if np.isnan(estimate) else f"{estimate:.2g}",
+            "–" if np.isnan(away) else f"{away:.3f}",
+            found.reply.reasons[row],
+        )
+    return table

@@ -1,0 +1,107 @@
+"""`femcheck chart`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+from rich.markup import escape
+from rich.table import Table
+
+from beamopt.cli.progress import console, progress_bar
+from beamopt.errors import InputError
+from beamopt.model import parse
+from beamopt.provenance import thread_settings
+from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
+from femcheck.chart.run import Budget, run_chart
+from femcheck.cli.request import RunRequest, options_of
+from femcheck.models.named import named_design
+from femcheck.models.question import Question
+
+__all__ = ["ChartRequest", "chart_command", "levels_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class ChartRequest:
+    """The options as they were given."""
+
+    source: str
+    out: Path | None
+    law: RunRequest
+    levels: str | None
+    families: Sequence[str]
+    seconds: float
+    workers: int
+    resume: bool
+
+
+def chart_command(request: ChartRequest) -> None:
+    """Ask every model, show progress, and say which is the cheapest."""
+    if not 0 < request.seconds < np.inf:
+        raise InputError("--seconds", "", request.seconds, "above 0 s")
+    law = options_of(request.law)
+    name, design = named_design(request.source)
+    if request.levels is not None:
+        data = design.model_dump(by_alias=True, exclude_none=True)
+        design = parse(type(design), data | {"pressures": levels_of(request.levels)}, "--levels")
+    question = Question.of(name, design, law)
+    folder = request.out or Path("charts") / name
+    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
+    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    started = perf_counter()
+    with progress_bar("models") as bar:
+        task = bar.add_task(escape(name), total=None, said="starting")
+
+        def show(done: int, total: int, said: str) -> None:
+            bar.update(task, completed=done, total=total, said=said)
+            if bar.disable:
+                spent = perf_counter() - started
+                console.print(f"{done} of {total}, {spent / 60:.1f} min: {said}", markup=False)
+
+        chart = run_chart(
+            question,
+            folder,
+            families=request.families or None,
+            budget=Budget(request.seconds),
+            workers=request.workers,
+            resume=request.resume,
+            progress=show,
+        )
+    _report(chart, folder)
+
+
+def levels_of(text: str) -> tuple[float, ...]:
+    """Three pressures [kPa] of "0,5,10".
+
+    Raises
+    ------
+    InputError : they are not three numbers.
+    """
+    try:
+        levels = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        levels = ()
+    if len(levels) != 3:
+        raise InputError("--levels", "", text, "three ascending pressures in kPa, as 0,5,10")
+    return levels
+
+
+def _report(chart: Chart, folder: Path) -> None:
+    for line in chart.sentences():
+        console.print(line, soft_wrap=True, markup=False)
+    table = Table(title="the cheapest of every family", title_justify="left")
+    table.add_column("model")
+    for accuracy in ACCURACIES:
+        table.add_column(f"within {accuracy:g} mm", justify="right")
+    for family in dict.fromkeys(row.measured.family for row in chart.rows):
+        cells = []
+        for accuracy in ACCURACIES:
+            best = chart.cheapest(accuracy, family)
+            told = best is not None and accuracy >= chart.uncertainty
+            cells.append(seconds_text(best.measured.seconds) if told and best else "–")
+        table.add_row(family, *cells)
+    console.print(table)
+    console.print(f"files: {folder}/ (chart.csv, chart.png, …)", soft_wrap=True, markup=False)

@@ -1,0 +1,67 @@
+"""A design by a file, a run folder or a scene."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from beamopt.bundled import bundled_scenes
+from beamopt.design import Design, load_design
+from beamopt.errors import InputError
+from beamopt.scene import Scene, load_scene
+
+__all__ = ["design_of_scene", "name_of", "named_design"]
+
+MOST_SECTIONS = 100  # that are drawn until one is stiff
+
+
+def named_design(source: str) -> tuple[str, Design]:
+    """Name and design of a design file, a run folder, or a scene.
+
+    Raises
+    ------
+    InputError : there is none, or it can not be read.
+    """
+    path = Path(source)
+    if source in bundled_scenes() or path.suffix == ".toml":
+        scene = load_scene(source)
+        return scene.name, design_of_scene(scene)
+    file = path / "best.json" if path.is_dir() else path
+    if not file.exists():
+        scenes = ", ".join(bundled_scenes())
+        said = f"no such design; a design file, a run folder, a scene, or one of: {scenes}"
+        raise InputError(source, "", None, said)
+    design = load_design(file)
+    return name_of(path, design), design
+
+
+def name_of(path: Path, design: Design) -> str:
+    """A run's scene and seed; another design's file name."""
+    scene, seed = design.notes.get("scene"), design.notes.get("seed")
+    of_run = path.is_dir() or path.stem in ("best", "final")
+    named = isinstance(scene, str) and re.fullmatch(r"[\w-]+", scene) and isinstance(seed, int)
+    if of_run and named:
+        return f"{scene}-{seed}-final" if path.stem == "final" else f"{scene}-{seed}"
+    return path.resolve().name if path.is_dir() else path.stem
+
+
+def design_of_scene(scene: Scene) -> Design:
+    """The section of the scene's target where it is one, else a random one, under its loads.
+
+    Raises
+    ------
+    InputError : the target's file is missing or wrong; no random section is stiff.
+    """
+    if scene.target.kind == "section":
+        design = load_design(str(scene.target.file))
+        if not design.loads.loads.any:
+            design = design.model_copy(update={"rod": scene.climbed_rules, "loads": scene.loads})
+        return design.model_copy(update={"pressures": scene.pressures.levels})
+    for k in range(MOST_SECTIONS):
+        design = scene.design_of(scene.random_points(np.random.default_rng([0, k])))
+        if design.moments.is_stiff:
+            return design
+    said = f"none of {MOST_SECTIONS} random sections is stiff: more material, or other points"
+    raise InputError("", "section.material_probability", None, said)
