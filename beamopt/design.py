@@ -159,7 +159,7 @@ class Design(Model):
     def section(self) -> CrossSection:
         """The raster, rebuilt from its feature points or its drawing."""
         grid, walls, rules = self.grid.build(), self.wall_elements, self.seal.rules
-        source = self._source
+        source = self.source
         if isinstance(source, FeaturePoints):
             return CrossSection.from_points(grid, source, walls, rules)
         return CrossSection.from_drawing(grid, source, walls, rules)
@@ -169,7 +169,7 @@ class Design(Model):
         """The section's polygons, sealed where the design is; with what is wrong with them."""
         from beamopt.outline.build import build_outline
 
-        return build_outline(self.grid.build(), self._source, self.seal.rules)
+        return build_outline(self.grid.build(), self.source, self.seal.rules)
 
     @cached_property
     def moments(self) -> Moments:
@@ -177,7 +177,8 @@ class Design(Model):
         return self.outline.moments if self.seal.rules.sealed else self.section.moments
 
     @property
-    def _source(self) -> FeaturePoints | list[Shape]:
+    def source(self) -> FeaturePoints | list[Shape]:
+        """What its section is made of."""
         if self.feature_points is not None:
             return FeaturePoints(**self.feature_points.model_dump())
         return [chamber.build() for chamber in self.drawing or []]

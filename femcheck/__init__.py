@@ -5,6 +5,9 @@
     print(checked.holds, checked.comparison.worst)
     found = femcheck.predict_design(subject, Path("silicone"), femcheck.PredictionOptions())
     print(femcheck.verdict(found), found.stable_box)
+    question = femcheck.Question.of("mine", subject.design, femcheck.PredictionOptions())
+    within = femcheck.answer_within(question, 0.1)  # mm; the cheapest model that is near enough
+    print(within.ending.value, within.chosen, within.worst)
 
 Units are mm, kPa, and so mN and mN·mm.
 """
@@ -15,6 +18,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from femcheck.accuracy.within import Within, answer_within
+    from femcheck.chart.chart import Chart
+    from femcheck.chart.run import run_chart
     from femcheck.check.checked import Checked
     from femcheck.check.comparison import Comparison
     from femcheck.check.options import CheckOptions
@@ -27,6 +33,7 @@ if TYPE_CHECKING:
     from femcheck.material.rigid_section import RigidSection
     from femcheck.mesh.geo import SectionSizes
     from femcheck.mesh.gmsh_section import Mesher, MeshFailure, MeshProblem
+    from femcheck.models.question import Question
     from femcheck.prediction.options import PredictionOptions
     from femcheck.prediction.prediction import Prediction
     from femcheck.prediction.run import predict_design
@@ -34,6 +41,9 @@ if TYPE_CHECKING:
     from femcheck.solid.winding import Wound
 
 _HOMES = {
+    "femcheck.accuracy.within": ("Within", "answer_within"),
+    "femcheck.chart.chart": ("Chart",),
+    "femcheck.chart.run": ("run_chart",),
     "femcheck.check.checked": ("Checked",),
     "femcheck.check.comparison": ("Comparison",),
     "femcheck.check.options": ("CheckOptions",),
@@ -46,6 +56,7 @@ _HOMES = {
     "femcheck.material.rigid_section": ("RigidSection",),
     "femcheck.mesh.geo": ("SectionSizes",),
     "femcheck.mesh.gmsh_section": ("MeshFailure", "MeshProblem", "Mesher"),
+    "femcheck.models.question": ("Question",),
     "femcheck.prediction.options": ("PredictionOptions",),
     "femcheck.prediction.prediction": ("Prediction",),
     "femcheck.prediction.run": ("predict_design",),
@@ -54,6 +65,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Chart",
     "CheckOptions",
     "Checked",
     "Comparison",
@@ -63,15 +75,19 @@ __all__ = [
     "Mesher",
     "Prediction",
     "PredictionOptions",
+    "Question",
     "RigidSection",
     "SectionSizes",
     "Status",
     "Subject",
     "Thread",
+    "Within",
     "Wound",
+    "answer_within",
     "check_design",
     "law_by_name",
     "predict_design",
+    "run_chart",
     "sealed_copy",
     "slender_copy",
     "verdict",

@@ -22,12 +22,14 @@ __all__ = [
     "ASIDE_COLOUR",
     "BELOW",
     "DESIGN_COLOUR",
+    "MATERIAL_COLOUR",
     "OUTLINE_COLOUR",
     "SERIES_COLOURS",
     "SUPPLY_COLOURS",
     "TARGET_COLOUR",
     "TYPE_COLOURS",
     "count_generations",
+    "figure_bytes",
     "log_losses",
     "new_figure",
     "pressure_colours",
@@ -108,16 +110,23 @@ def count_generations(axes: Axes) -> None:
 
 def save_figure(figure: Figure, *paths: Path) -> None:
     """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes."""
-    dateless: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    contents = figure_bytes(figure, *(path.suffix.lower()[1:] for path in paths))
+    for path, content in zip(paths, contents, strict=True):
+        write_atomic(path, content)
+
+
+def figure_bytes(figure: Figure, *endings: str) -> list[bytes]:
+    """A figure as files of each ending (svg, png, pdf) hold it; the same one, the same bytes."""
+    dateless: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    contents = []
     with _our_settings():
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # laid out now, once for all endings
-        for path in paths:
+        for ending in endings:
             stream = io.BytesIO()
-            ending = path.suffix.lower()
-            metadata = dateless.get(ending, {})
-            figure.savefig(stream, format=ending[1:], dpi=150, metadata=metadata)
-            write_atomic(path, stream.getvalue())
+            figure.savefig(stream, format=ending, dpi=150, metadata=dateless.get(ending, {}))
+            contents.append(stream.getvalue())
+    return contents
 
 
 def pressure_colours(pressures: FloatArray) -> FloatArray:

@@ -21,7 +21,7 @@ from beamopt.files import csv_text, write_atomic
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
 
-__all__ = ["Level", "learnt", "levels_for", "scale_of"]
+__all__ = ["MATERIAL", "ORDERS", "RIGID", "Level", "learnt", "levels_for", "scale_of"]
 
 FILE = "knowledge.csv"
 HEADER = "law,layers,size,grading,error_over_scale,cpu_seconds,charts"

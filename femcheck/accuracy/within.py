@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import pairwise
 from typing import Literal, Protocol
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from femcheck.accuracy.knowledge import Level, levels_for, scale_of
+from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.chart.lineup import STIFFER
 from femcheck.chart.measure import Measured
-from femcheck.models.beam import RodOnOutline
+from femcheck.models.beam import TIGHTEST, RodOnOutline
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply, cpu_seconds
 from femcheck.models.solid import SolidModel
@@ -24,17 +25,17 @@ __all__ = ["Ending", "Kept", "RungChoice", "Tried", "Within", "answer_within", "
 RungChoice = Literal["auto", "beam", "solid"]
 
 COMFORT = 0.5  # of the accuracy: the error that a chart has to promise for a level to be begun with
-SAFETY = 2.0  # on an estimate from two levels, whose order is that of theory
+SAFETY = 2.0  # on an estimate from changes between levels, whose order is that of theory
 FINER_ROD = 100.0  # how many times tighter the rod is solved that the first one is held against
 REMAINDER = 8.0  # of the usual penalties' own error over the stiffer ones': 16 in theory
-LEAST = 1  # index of the first level that may be the answer: the one below it is there to compare
+DEARER = 1.6  # power of the layers with which a solid's cost grows
 
 
 class Ending(Enum):
     """How it ended; the value is the text shown to people."""
 
     REACHED = "accuracy reached"
-    NOT_REACHED = "accuracy not reached: the finest solid's estimate is larger"
+    NOT_REACHED = "accuracy not reached: the finest model's estimate is larger"
     TOO_DEAR = "accuracy not reached: a finer solid is expected to take too long"
     NO_TIP = "no combination has a tip"
     NO_MODEL = "no model of this law can be made of the design"
@@ -167,6 +168,7 @@ class _Asking:
         self.progress = progress
         self.kept = kept
         self.tried: list[Tried] = []
+        self.path: list[tuple[int, Reply]] = []  # layers and replies of refined solids
 
     def ask(self, model: Model, foreseen: int) -> Reply:
         if self.progress is not None:
@@ -191,10 +193,17 @@ class _Asking:
             estimate = np.where(reply.found, 0.0, np.nan)
             reason = "the law is the beam's own and nothing but pressure acts: a closed form"
             return self._ended(reply, estimate, reason)
-        coarse = self.ask(RodOnOutline(self.accuracy), 2)
-        reply = self.ask(RodOnOutline(self.accuracy / FINER_ROD), 1)
         reason = "the law is the beam's own; loads make it a boundary-value problem"
-        return self._ended(reply, coarse.away(reply.tips), reason)
+        tightest = TIGHTEST * self.question.design.actuator.length
+        tolerance = max(self.accuracy, FINER_ROD * tightest)
+        coarse = self.ask(RodOnOutline(tolerance), 2)
+        while True:
+            tolerance = max(tolerance / FINER_ROD, tightest)
+            reply = self.ask(RodOnOutline(tolerance), 1)
+            within = self._ended(reply, coarse.away(reply.tips) + tolerance, reason)
+            if within.ending is not Ending.NOT_REACHED or tolerance == tightest:
+                return within
+            coarse = reply
 
     def solids(self, most_seconds: float) -> Within:
         """Two levels from the one that charts promise it of, then finer ones."""
@@ -206,53 +215,67 @@ class _Asking:
         if missing is not None:
             return self._nothing(Ending.NO_MODEL, f"{reason}: {missing}")
         levels, scale = levels_for(question), scale_of(question)
-        place = self._first(levels, scale)
+        place, pairs = self._first(levels, scale), 1 if question.is_of_the_beam else 2
         said = f"charts promise {levels[place].error * scale:.2g} mm of {_named(levels[place])}"
         reason = f"{reason}; {said}"
-        coarse, model = self._coarse(levels[place - 1])
-        while True:
-            fine = self.ask(self._like(levels[place].model, model), 1)
-            if not fine.found.any() and not coarse.found.any():
-                return self._nothing(Ending.NO_TIP, f"{reason}; {fine.reason}")
-            estimate = self._estimate(levels[place - 1], levels[place], coarse, fine)
-            within = self._ended(fine, estimate, reason)
-            if within.ending is Ending.REACHED:
-                return within
-            if place + 1 == len(levels):
-                return within
-            growth = levels[place + 1].seconds / levels[place].seconds
+        begin = max(place - pairs, 0)
+        penalties = self._begun(levels[begin].model)
+        within = self._ended(self.path[0][1], np.full_like(self.of_penalty, np.nan), reason)
+        for level in levels[begin + 1 :]:
+            growth = (level.model.layers / self.path[-1][0]) ** DEARER
             if self.tried[-1].seconds * growth > most_seconds:
-                return replace(within, ending=Ending.TOO_DEAR)
-            coarse, place = fine, place + 1
+                unsure = within.ending is Ending.NOT_REACHED
+                return replace(within, ending=Ending.TOO_DEAR) if unsure else within
+            fine = self._refined(replace(level.model, penalties=penalties))
+            if len(self.path) <= pairs:
+                continue
+            if not any(reply.found.any() for _, reply in self.path):
+                return self._nothing(Ending.NO_TIP, f"{reason}; {fine.reason}")
+            within = self._ended(fine, self._estimate(), reason)
+            if within.ending is Ending.REACHED or level is levels[-1]:
+                return within
+        raise AssertionError("the last level ends it")
 
     def _first(self, levels: Sequence[Level], scale: float) -> int:
+        """The first level that charts promise the accuracy of."""
         near = [k for k, one in enumerate(levels) if one.error * scale <= COMFORT * self.accuracy]
-        return max(min(near, default=len(levels) - 1), LEAST)
+        least = 1 if self.question.is_of_the_beam else 2
+        return max(min(near, default=len(levels) - 1), least)
 
-    def _coarse(self, level: Level) -> tuple[Reply, SolidModel]:
-        """The first level; of the beam's own law also what stiffer penalties make of it."""
-        model = level.model
-        coarse = self.ask(model, 3)
+    def _begun(self, model: SolidModel) -> tuple[float, float]:
+        """Ask the coarsest level; of the beam's own law also what stiffer penalties make of it."""
+        reply = self._refined(model, foreseen=3)
         self.of_penalty: FloatArray = np.zeros(len(self.question.pressures))
         if not self.question.is_of_the_beam:
-            return coarse, model
+            return model.penalties
         stiffer = replace(model, penalties=STIFFER)
         checked = self.ask(stiffer, 2)
-        self.of_penalty = checked.away(coarse.tips)
+        self.of_penalty = checked.away(reply.tips)
         known = self.of_penalty[np.isfinite(self.of_penalty)]
         if known.size and known.max() > self.accuracy / 4:
             self.of_penalty = self.of_penalty / REMAINDER
-            return checked, stiffer
-        return coarse, model
+            self.path = [(model.layers, checked)]
+            return STIFFER
+        return model.penalties
 
-    def _like(self, level: SolidModel, first: SolidModel) -> SolidModel:
-        return replace(level, penalties=first.penalties)
+    def _refined(self, model: SolidModel, foreseen: int = 1) -> Reply:
+        """Ask a level and remember its place on the way."""
+        reply = self.ask(model, foreseen)
+        self.path.append((model.layers, reply))
+        return reply
 
-    def _estimate(self, before: Level, level: Level, coarse: Reply, fine: Reply) -> FloatArray:
-        """What two levels and two pairs of penalties tell (n,) [mm]."""
-        order = 4.0 if self.question.is_of_the_beam else 2.0
-        left = SAFETY / ((level.model.layers / before.model.layers) ** order - 1)
-        return np.asarray(fine.away(coarse.tips) * left + self.of_penalty)
+    def _estimate(self) -> FloatArray:
+        """Errors (n,) of the last level: C layers⁻ᵖ with the larger C of the last two changes.
+
+        One change alone may be small by chance. What the penalties leave is added.
+        """
+        order = ORDERS[RIGID if self.question.is_of_the_beam else MATERIAL]
+        constants = [
+            fine.away(coarse.tips) / (few**-order - many**-order)
+            for (few, coarse), (many, fine) in pairwise(self.path[-3:])
+        ]
+        left = SAFETY * np.max(constants, axis=0) * self.path[-1][0] ** -order
+        return np.asarray(left + self.of_penalty)
 
     def _ended(self, reply: Reply, estimate: FloatArray, reason: str) -> Within:
         """Reached where every tip that any model has is there, and near enough."""

@@ -103,8 +103,12 @@ class Chart:
         yield f"Reference: {reference.family}, ± {reference.uncertainty:.2g} mm."
         for other in reference.others:
             apart, band = reference.apart(other), reference.band + other.band
-            worst = int(np.nanargmax(apart))
-            verdict = "agrees" if reference.agrees(other) else "DISAGREES"
+            if not np.isfinite(apart).any():
+                yield f"{other.family} has no tip in common with it."
+                continue
+            agrees = reference.agrees(other)
+            worst = int(np.nanargmax(apart if agrees else apart - band))
+            verdict = "agrees" if agrees else "DISAGREES"
             yield (
                 f"{other.family} extrapolates to within {apart[worst]:.2g} mm of it, "
                 f"bands together {band[worst]:.2g} mm: {verdict}."

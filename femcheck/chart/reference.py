@@ -10,7 +10,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from femcheck.chart.lineup import Series
 from femcheck.chart.measure import Measured, key_of
-from femcheck.models.beam import RodOnOutline
+from femcheck.models.beam import TIGHTEST, RodOnOutline
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
 from femcheck.solid.elements import ELEMENTS
@@ -84,7 +84,6 @@ LEAST_ORDER = 1.0
 """Below it three solutions do not tell yet where they lead."""
 
 ROUNDING = 1e-10  # of the length: what is left of a closed form
-TIGHTEST = 1e-9  # of the length: tolerance of a rod under loads
 
 
 def _closed_form(question: Question) -> Limit:
@@ -110,7 +109,8 @@ def limits_of(series: Sequence[Series], measured: Mapping[str, Measured]) -> lis
 def _limit(series: Series, measured: Mapping[str, Measured]) -> Limit | None:
     """From the two finest, with the element's order, or the one that three show if it is lower.
 
-    What finer triangles and stiffer penalties change is added; all of it counts in the band.
+    Two do not show an order: the band is as wide as the least one makes it. What finer triangles
+    and stiffer penalties change is added; all of it counts in the band.
     """
     solved = [
         (model, measured[key_of(model)].reply.tips)
@@ -124,17 +124,22 @@ def _limit(series: Series, measured: Mapping[str, Measured]) -> Limit | None:
     order = ELEMENTS[finest.element].tip_order
     if order is None:
         return None
+    least = LEAST_ORDER
     if len(solved) > 2:
-        order = min(order, _observed_order([(model.layers, own) for model, own in solved[-3:]]))
+        shown = _observed_order([(model.layers, own) for model, own in solved[-3:]])
+        order = least = min(order, shown)
         if order < LEAST_ORDER:
             return None
-    step = (tips - before) / ((finest.layers / coarser.layers) ** order - 1)
-    limit, band = tips + step, np.linalg.norm(step, axis=1)
+    change, finer = tips - before, finest.layers / coarser.layers
+    limit = tips + change / (finer**order - 1)
+    band = np.linalg.norm(change, axis=1) / (finer**least - 1)
     by_layers = {model.layers: own for model, own in solved}
     for extra in (series.sized, series.stiffer):
         if extra is None or key_of(extra) not in measured or extra.layers not in by_layers:
             continue
         moved = measured[key_of(extra)].reply.tips - by_layers[extra.layers]
+        if not np.isfinite(moved).any():  # it was left out
+            continue
         limit = limit + moved
         band = band + np.linalg.norm(moved, axis=1)
     return Limit(series.family, limit, np.asarray(band))
@@ -145,7 +150,8 @@ def _observed_order(solved: Sequence[tuple[int, FloatArray]]) -> float:
     from scipy.optimize import brentq
 
     (a, first), (b, second), (c, third) = solved
-    changes = [_largest(second - first), _largest(third - second)]
+    known = np.isfinite(first + second + third).all(axis=1)  # the largest of the same tips
+    changes = [_largest((second - first)[known]), _largest((third - second)[known])]
     if not 0 < changes[1] < changes[0]:
         return 0.0
 
@@ -159,5 +165,4 @@ def _observed_order(solved: Sequence[tuple[int, FloatArray]]) -> float:
 
 
 def _largest(changes: FloatArray) -> float:
-    lengths = np.linalg.norm(changes, axis=1)
-    return float(lengths[np.isfinite(lengths)].max(initial=0.0))
+    return float(np.linalg.norm(changes, axis=1).max(initial=0.0))

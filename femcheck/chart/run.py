@@ -26,6 +26,7 @@ from femcheck.chart.reference import reference_of
 from femcheck.check.folder import PACKAGES
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, nothing
+from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
@@ -74,17 +75,18 @@ def run_chart(
     claim_folder(out, JOURNAL, (), resume=resume)
     journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
     measured = measured_in(journal)
-    total = sum(len(list(one.all)) for one in series)
+    asked = {key_of(model) for one in series for model in one.all}
 
     def keep(one: Measured) -> None:
         line = written(one)
         measured[line["model"]] = one
-        journal.add(line)
+        if np.isfinite(one.seconds):  # what was left out may be asked with more time
+            journal.add(line)
         if progress is not None:
-            progress(len(measured), total, line["model"])
+            progress(len(asked & measured.keys()), len(asked), line["model"])
 
     if progress is not None:
-        progress(len(measured), total, "starting")
+        progress(len(asked & measured.keys()), len(asked), "starting")
     _ask(question, series, measured, budget or Budget(), lambda: pool(workers), workers, keep)
     known = [measured[key_of(model)] for one in series for model in one.all]
     chart = Chart.of(question, known, reference_of(question, series, measured))
@@ -103,6 +105,7 @@ def _ask(
 ) -> None:
     """Each series from coarse to fine; a finer model waits until its cost can be guessed."""
     left = {one.family: [m for m in one.all if key_of(m) not in measured] for one in series}
+    by_family = {one.family: one for one in series}
     running: dict[Future[Measured], tuple[str, Model]] = {}
     with pool() as executor:
         while any(left.values()) or running:
@@ -111,7 +114,7 @@ def _ask(
                 if len(running) >= workers or family in busy:
                     continue
                 model = left[family].pop(0)
-                if _guessed(family, measured) > budget.seconds:
+                if _guessed(by_family[family], model, measured) > budget.seconds:
                     keep(_left_out(question, model, budget))
                     continue
                 running[executor.submit(measure, question, model)] = family, model
@@ -121,15 +124,21 @@ def _ask(
                 keep(future.result())
 
 
-def _guessed(family: str, measured: dict[str, Measured]) -> float:
-    """Seconds that the next finer model of a family will take, at least."""
-    known = [one.seconds for one in measured.values() if one.family == family]
-    if not known:
-        return 0.0
-    if np.isnan(known[-1]):
-        return np.inf
-    grown = known[-1] / known[-2] if len(known) > 1 and known[-2] > 0 else GROWTH
-    return known[-1] * max(grown, 1.0)
+def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:
+    """Seconds that a model will take, at least; infinite where a coarser one was left out."""
+    if model in series.models:
+        coarser = series.models[: series.models.index(model)]
+        known = [measured[key_of(one)].seconds for one in coarser]
+        grown = known[-1] / known[-2] if len(known) > 1 and known[-2] > 0 else GROWTH
+        guess = known[-1] * max(grown, 1.0) if known else 0.0
+    else:
+        guess = next(
+            measured[key_of(one)].seconds * one.size / model.size
+            for one in series.models
+            if isinstance(one, SolidModel) and isinstance(model, SolidModel)
+            if one.layers == model.layers
+        )
+    return np.inf if np.isnan(guess) else guess
 
 
 def _left_out(question: Question, model: Model, budget: Budget) -> Measured:

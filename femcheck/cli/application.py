@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -105,6 +106,19 @@ def run_designs(
     gmsh_seconds: Annotated[
         float, typer.Option(metavar="S", help="Time limit of one mesh.")
     ] = 60.0,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MM",
+            help="Tips to 0.1mm, say: rung and mesh are chosen, the error is estimated.",
+        ),
+    ] = None,
+    rung: Annotated[
+        str, typer.Option(help="With --accuracy: beam or solid, instead of the cheaper one.")
+    ] = "auto",
+    budget: Annotated[
+        float, typer.Option(metavar="S", help="With --accuracy: longest a model may take.")
+    ] = math.inf,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
         False
     ),
@@ -137,8 +151,45 @@ def run_designs(
             gmsh=gmsh,
             gmsh_seconds=gmsh_seconds,
             resume=resume,
+            accuracy=accuracy,
+            rung=rung,
+            budget=budget,
         )
     )
+
+
+@app.command(name="chart")
+def chart_models(
+    source: Annotated[
+        str, typer.Argument(metavar="DESIGN|RUN|SCENE", help="What the tips are asked of.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; charts/NAME if left out.")
+    ] = None,
+    law: Annotated[str, typer.Option(help="As of `femcheck run`.")] = "rigid-section",
+    nu: Annotated[float | None, typer.Option(help="As of `femcheck run`.")] = None,
+    wind: Annotated[str | None, typer.Option(help="As of `femcheck run`.")] = None,
+    levels: Annotated[
+        str | None, typer.Option(metavar="A,B,C", help="Pressures [kPa] instead of the design's.")
+    ] = None,
+    family: Annotated[
+        list[str] | None,
+        typer.Option(help="raster, beam, wedge18, …; may be given again. All if left out."),
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option(metavar="S", help="Models expected to take longer are left out.")
+    ] = 1800.0,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Models asked at once.")] = 2,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on; where all is there, only draw it again.")
+    ] = False,
+) -> None:
+    """Chart error against processor time of every model: arcs, rods, solids; who is cheapest."""
+    from femcheck.cli.chart import ChartRequest, chart_command
+    from femcheck.cli.request import RunRequest
+
+    asked = RunRequest([], law=law, nu=nu, wind=wind)
+    chart_command(ChartRequest(source, out, asked, levels, family or [], seconds, workers, resume))
 
 
 @app.command(name="laws")
@@ -150,6 +201,91 @@ def show_laws() -> None:
     from femcheck.cli.laws import laws_command
 
     laws_command()
+
+
+@app.command(name="report")
+def write_report(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN…",
+            help="Folders of femcheck run and beamopt optimize, charts, maps; or of such folders.",
+        ),
+    ],
+    out: Annotated[Path, typer.Option(metavar="FILE.html", help="The page to write.")],
+    title: Annotated[
+        str, typer.Option(help="Title of the page; the designs' names if left out.")
+    ] = "",
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no report.")
+    ] = False,
+) -> None:
+    """Put results into one page that opens from disk: verdicts, figures, models that turn."""
+    from femcheck.cli.report_page import report_command
+
+    report_command(runs, out, title, force=force)
+
+
+@app.command(name="stability")
+def stability_map(
+    out: Annotated[Path, typer.Option(help="Folder of the map.")] = Path("stability"),
+    axis: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A panel: wall, nu, slenderness, element, section, tube, wound-slenderness or "
+            "wound-wall; may be given again. All if left out."
+        ),
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the map there.")] = False,
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Tables and figure from what is there; solve nothing.")
+    ] = False,
+) -> None:
+    """Map where actuators of silicone have an equilibrium, and where the beam is right."""
+    from femcheck.cli.stability import StabilityRequest, stability_command
+
+    stability_command(StabilityRequest(out, axis or [], workers, resume, redraw))
+
+
+@app.command(name="baseline")
+def write_baselines(
+    designs: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[DESIGN…]", help="Design files, or names of the package's; those if left out."
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("reports/baseline"),
+    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
+    force: Annotated[bool, typer.Option("--force", help="Write over baselines there.")] = False,
+) -> None:
+    """Write what every rung says of designs today, with tolerances from error estimates."""
+    from femcheck.cli.regression import baseline_command
+
+    baseline_command(designs or [], out, meshes, workers, force=force)
+
+
+@app.command(name="regress")
+def hold_against_baselines(
+    designs: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[DESIGN…]", help="Designs; all that have one if left out."),
+    ] = None,
+    baseline: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path(
+        "reports/baseline"
+    ),
+    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE.csv", help="Write all that moved.")
+    ] = None,
+) -> None:
+    """Compute what baselines hold anew; ends with 1 and a table if anything moved."""
+    from femcheck.cli.regression import regress_command
+
+    regress_command(designs or [], baseline, meshes, workers, out)
 
 
 def run(arguments: Sequence[str]) -> int:

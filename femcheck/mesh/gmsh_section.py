@@ -21,7 +21,7 @@ from beamopt.outline.outline import Outline
 from femcheck.mesh.geo import SectionSizes, geo_script
 from femcheck.mesh.section_mesh import SectionMesh
 
-__all__ = ["MeshFailure", "MeshProblem", "Mesher"]
+__all__ = ["MeshFailure", "MeshProblem", "Mesher", "read_section"]
 
 
 class MeshProblem(Enum):
@@ -131,6 +131,23 @@ def _kill(process: subprocess.Popen[str]) -> None:
 
 def _read(file: Path, outline: Outline) -> SectionMesh | MeshFailure:
     """The mesh in a file, checked against the outline that it is of."""
+    section = read_section(file)
+    if isinstance(section, MeshFailure):
+        return section
+    wanted, area = outline.moments.area, section.areas.sum()
+    if abs(area - wanted) > 1e-6 * wanted or not np.allclose(
+        section.moments.raw, outline.moments.raw, rtol=1e-6, atol=1e-6 * float(wanted)
+    ):
+        return MeshFailure(MeshProblem.WRONG, f"area {area:.3f} mm², outline {wanted:.3f} mm²")
+    thinnest = int(np.argmin(section.areas))
+    if section.areas[thinnest] <= 0:
+        x, y = section.points[section.triangles[thinnest]].mean(axis=0)
+        return MeshFailure(MeshProblem.INVERTED, f"triangle at ({x:.2f}, {y:.2f}) mm")
+    return section
+
+
+def read_section(file: Path) -> SectionMesh | MeshFailure:
+    """The mesh in a gmsh file, whatever it is of; its physical groups as in `geo_script`."""
     import meshio
 
     try:
@@ -145,17 +162,7 @@ def _read(file: Path, outline: Outline) -> SectionMesh | MeshFailure:
         return MeshFailure(MeshProblem.NO_MESH, said or type(error).__name__)
     if not triangles.size or not edges.size:
         return MeshFailure(MeshProblem.NO_MESH, "no triangles")
-    section = _ordered(points, triangles, edges, supply)
-    wanted, area = outline.moments.area, section.areas.sum()
-    if abs(area - wanted) > 1e-6 * wanted or not np.allclose(
-        section.moments.raw, outline.moments.raw, rtol=1e-6, atol=1e-6 * float(wanted)
-    ):
-        return MeshFailure(MeshProblem.WRONG, f"area {area:.3f} mm², outline {wanted:.3f} mm²")
-    thinnest = int(np.argmin(section.areas))
-    if section.areas[thinnest] <= 0:
-        x, y = section.points[section.triangles[thinnest]].mean(axis=0)
-        return MeshFailure(MeshProblem.INVERTED, f"triangle at ({x:.2f}, {y:.2f}) mm")
-    return section
+    return _ordered(points, triangles, edges, supply)
 
 
 def _ordered(

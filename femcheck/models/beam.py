@@ -13,7 +13,9 @@ from beamopt.rod.status import RodStatus
 from femcheck.models.question import Question
 from femcheck.models.reply import FOUND, Reply, nothing
 
-__all__ = ["ArcOnGrid", "RodByMethod", "RodOnOutline", "on_grid"]
+__all__ = ["TIGHTEST", "ArcOnGrid", "RodByMethod", "RodOnOutline", "on_grid"]
+
+TIGHTEST = 1e-9  # of the length: smallest tolerance that a rod is solved to
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,8 @@ def _rebuilt(design: Design, **changes: Any) -> Design:
 class RodOnOutline:
     """The rod of what the section is: the outline's polygons of a sealed design, else its raster.
 
-    Without loads it is a closed form; with them it is solved as finely as `tolerance` [mm] takes.
+    Without loads it is a closed form; with them it is solved as finely as `tolerance` [mm] takes,
+    which is at least `TIGHTEST` and at most a tenth of the length.
     """
 
     tolerance: float | None = None
@@ -90,7 +93,8 @@ class RodOnOutline:
         design = question.design
         rules = design.rod.model_dump()
         if self.tolerance is not None:
-            rules["tolerance"] = min(self.tolerance / design.actuator.length, 0.1)
+            share = self.tolerance / design.actuator.length
+            rules["tolerance"] = min(max(share, TIGHTEST), 0.1)
         return _rod(question, _rebuilt(design, rod=rules), None)
 
 

@@ -90,6 +90,6 @@ class Question:
         except LoadedDesignError as error:
             return str(error)
         if not self.design.seal.rules.sealed:
-            return f"{self.name} is not sealed: it has no solid"
+            return f"{self.name} is not sealed: it is a raster, and a solid is of an outline"
         fatal = self.subject.fatal
         return None if fatal is None else str(fatal)

@@ -93,14 +93,14 @@ class SolidModel:
             return False
         return law.law_for(question.design.actuator).volumetric_compliance is not None
 
-    def reply(self, question: Question, workers: int = 0) -> Reply:
-        """Mesh and solve; the whole of it is done anew."""
+    def reply(self, question: Question, workers: int = 0, kind: type[Solid] = Solid) -> Reply:
+        """Mesh and solve; the whole of it is done anew. kind : whose elements these are."""
         options, subject = self.options(question.law), question.subject
         section = options.mesher.mesh(subject.outline, options.sizes)
         if isinstance(section, MeshFailure):
             return nothing(question, str(section))
         pool = partial(processes if workers else in_process, max(workers, 1))
-        ask = _Solving(question, options, self, section, pool, max(workers, 1))
+        ask = _Solving(question, options, self, section, pool, max(workers, 1), kind)
         tips, reasons = ask.rigid() if question.is_of_the_beam else ask.material()
         solid = ask.solid("size", RigidSection(1.0, 1.0))
         body = solid.body()
@@ -131,6 +131,7 @@ class _Solving:
     section: SectionMesh
     pool: Callable[[], AbstractContextManager[Executor]]
     workers: int
+    kind: type[Solid]
 
     @property
     def design(self) -> Design:
@@ -142,7 +143,8 @@ class _Solving:
         wound = None
         if isinstance(options, PredictionOptions) and options.wound is not None:
             wound = (options.wound, options.thread)
-        return Solid(name, self.section, heights, self.model.element, law, options.solver, wound)
+        element, solver = self.model.element, options.solver
+        return self.kind(name, self.section, heights, element, law, solver, wound)
 
     @property
     def centroid(self) -> FloatArray:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import femcheck.picture as picture
+from beamopt.arrays import FloatArray
 from beamopt.plot.style import save_figure
 from beamopt.study.pool import processes
 from femcheck.check.case import Solid
@@ -111,6 +112,15 @@ def _digest(solid: Solid, work: RayWork, key: RayKey) -> str:
     return hashlib.blake2b(said.encode(), digest_size=16).hexdigest()
 
 
+def _answered(found: Prediction) -> dict[str, FloatArray]:
+    """Positions of the nodes at every combination that has an answer, named as a check does."""
+    answers = {
+        "-".join(f"{value:g}" for value in pressures): found.answer(row)
+        for row, pressures in enumerate(found.subject.pressures.tolist())
+    }
+    return {name: answer.x for name, answer in answers.items() if answer is not None}
+
+
 def _write(folder: CheckFolder, found: Prediction) -> None:
     """Tables, meshes, figures, and a picture of the last stable shape of what ends first."""
     folder.write(tables_of(found))
@@ -125,7 +135,7 @@ def _write(folder: CheckFolder, found: Prediction) -> None:
         save_figure(draw(found), *ends)
     lasts = {n: found.result(n).last for n in range(len(found.rays))}
     states = {f"last-{found.rays[n].name}": last.x for n, last in lasts.items() if last}
-    folder.write_meshes(found.solids["standard"], states)
+    folder.write_meshes(found.solids["standard"], states | _answered(found))
     ended = found.first_to_end
     shown = 0 if ended is None else ended
     last = lasts[shown]

@@ -15,9 +15,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from beamopt.files import csv_text, write_atomic
+from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.plot.style import save_figure
-from beamopt.provenance import thread_settings
+from beamopt.provenance import provenance, thread_settings
+from femcheck.check.folder import PACKAGES
 
 QUICK = bool(os.environ.get("BENCH_QUICK"))
 """Small sizes, to try a benchmark itself: its report is kept apart from the measured ones."""
@@ -48,6 +49,7 @@ def report(name: str, measured: Iterable[Measured]) -> None:
     REPORTS.mkdir(parents=True, exist_ok=True)
     cells = [(row.what, row.value, row.unit) for row in rows]
     write_atomic(REPORTS / f"{name}.csv", csv_text("what,value,unit", cells))
+    write_atomic(REPORTS / f"{name}-provenance.json", json_text(provenance(PACKAGES)))
 
 
 def save_growth(figure: Any, name: str) -> None:

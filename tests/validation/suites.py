@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tests.validation import (
+    accuracy,
     arc,
     genotypes,
     material,
     published_solids,
+    regression,
     resume,
     rods,
     solid,
@@ -27,4 +29,6 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "material": material.checks,
     "published-solids": published_solids.checks,
     "rods": rods.checks,
+    "accuracy": accuracy.checks,
+    "regression": regression.checks,
 }

@@ -29,7 +29,7 @@ class Coarse(Subject):
     @cached_property
     def outline(self) -> Outline:  # type: ignore[override]
         design = self.design
-        return build_outline(design.grid.build(), design._source, design.seal.rules, 0.4)
+        return build_outline(design.grid.build(), design.source, design.seal.rules, 0.4)
 
 
 def three_circles() -> list[dict[str, Any]]:

@@ -323,10 +323,12 @@ def test_files(limited: Done) -> None:
         *("paths.png", "paths.svg", "axis.png", "axis.svg"),
         *("mesh.msh", "mesh.vtu", "cases", "deformed"),
     }
-    rays = {ray.name for ray in found.rays}
-    assert {file.name for file in (folder / "deformed").iterdir()} == {
-        f"last-{name}.vtu" for name in rays
-    }
+    lasts = {f"last-{ray.name}.vtu" for ray in found.rays}
+    rows = [row for row in range(27) if found.answer(row) is not None]
+    assert rows
+    answers = {"-".join(f"{p:g}" for p in found.subject.pressures[row]) for row in rows}
+    shapes = {file.name for file in (folder / "deformed").iterdir()}
+    assert shapes == lasts | {f"{name}.vtu" for name in answers}
     assert len(list((folder / "cases").iterdir())) == 19 + 4
 
 
@@ -339,6 +341,20 @@ def test_deformed_files_are_the_last_equilibria(limited: Done) -> None:
     read = meshio.read(folder / "deformed" / "last-100_0_0.vtu")
     shown = found.solids["standard"].shown()
     np.testing.assert_allclose(read.points, last.x[shown.nodes], atol=1e-6)
+
+
+def test_deformed_files_are_the_answers_too(limited: Done) -> None:
+    """Named by their pressures, as a check names them."""
+    import meshio
+
+    found, folder = limited
+    row = next(row for row in range(27) if found.answer(row) is not None)
+    answer = found.answer(row)
+    assert answer is not None
+    name = "-".join(f"{pressure:g}" for pressure in found.subject.pressures[row])
+    read = meshio.read(folder / "deformed" / f"{name}.vtu")
+    shown = found.solids["standard"].shown()
+    np.testing.assert_allclose(read.points, answer.x[shown.nodes], atol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["paths.png", "axis.png"])

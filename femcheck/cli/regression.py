@@ -1,0 +1,121 @@
+"""`femcheck baseline` and `femcheck regress`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from beamopt.cli.progress import console, progress_bar
+from beamopt.files import csv_text, write_atomic
+from beamopt.provenance import thread_settings
+from femcheck.regression.moved import Moved, said
+from femcheck.regression.run import ContradictionError, Regression, hold_designs, regress
+
+__all__ = ["baseline_command", "regress_command"]
+
+HEADER = "design,rung,resolution,law,quantity,row,held,now,moved,tolerance,unit"
+MOST_ROWS = 30  # of the table on the terminal
+WIDE = 160  # characters of the table where there is no terminal
+LINES = 10  # of progress, where there is no terminal to draw a bar on
+
+
+def baseline_command(
+    designs: list[str], out: Path, meshes: Path, workers: int, *, force: bool
+) -> None:
+    """Write baselines, and end with 1 if rungs contradict each other."""
+    started = perf_counter()
+    _say_threads(workers)
+    try:
+        with _Shown() as shown:
+            files = hold_designs(
+                designs, out, meshes, force=force, workers=workers, callback=shown.tell
+            )
+    except ContradictionError as error:
+        console.print(f"nothing is written: {error}", soft_wrap=True, markup=False)
+        raise typer.Exit(1) from None
+    seconds = perf_counter() - started
+    many = "s" if len(files) > 1 else ""
+    console.print(f"{len(files)} baseline{many} in {out}/, {seconds:.0f} s", markup=False)
+
+
+def regress_command(
+    designs: list[str], baseline: Path, meshes: Path, workers: int, out: Path | None
+) -> None:
+    """Compute what is held anew; end with 1 and a table if anything moved."""
+    started = perf_counter()
+    _say_threads(workers)
+    with _Shown() as shown:
+        found = regress(designs, baseline, meshes, workers=workers, callback=shown.tell)
+    if out is not None:
+        write_atomic(out, csv_text(HEADER, map(_cells, found.moved)))
+    seconds = perf_counter() - started
+    about = f"{found.rungs} rungs of {len(found.designs)} designs, {found.rows} rows"
+    if found.holds:
+        console.print(f"{about}: nothing moved, {seconds:.0f} s", soft_wrap=True, markup=False)
+        return
+    _report(found)
+    console.print(f"{about}: {len(found.moved)} moved, {seconds:.0f} s", markup=False)
+    console.print(f"lowest rung that moved: {found.lowest}", soft_wrap=True, markup=False)
+    raise typer.Exit(1)
+
+
+def _report(found: Regression) -> None:
+    table = Table(title="moved", title_justify="left")
+    for name in ("design", "rung", "resolution", "at", "held", "now", "moved", "tolerance"):
+        table.add_column(name, overflow="fold")
+    for one in found.moved[:MOST_ROWS]:
+        held = one.held
+        table.add_row(
+            escape(one.design),
+            escape(held.rung),
+            escape(held.resolution),
+            escape(f"{held.quantity}, {one.row}"),
+            escape(said(one.before)),
+            escape(said(one.now)),
+            f"{one.distance:.3g} {held.unit}",
+            f"{held.tolerance:.2g}",
+        )
+    # a file has lines of any length; numbers broken in two can not be read
+    console.print(table, width=None if console.is_terminal else WIDE, soft_wrap=True)
+    left = len(found.moved) - MOST_ROWS
+    if left > 0:
+        console.print(f"… and {left} more: --out FILE.csv has all of them", markup=False)
+
+
+def _cells(one: Moved) -> tuple[object, ...]:
+    held = one.held
+    place = (one.design, held.rung, held.resolution, held.law, held.quantity, one.row)
+    moved = (said(one.before), said(one.now), one.distance, held.tolerance, held.unit)
+    return (*place, *moved)
+
+
+def _say_threads(workers: int) -> None:
+    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
+    console.print(f"{workers} at once, {threads}", soft_wrap=True)
+
+
+class _Shown:
+    """Progress while rungs are computed."""
+
+    def __init__(self) -> None:
+        self.bar = progress_bar("parts")
+        self.done = 0
+
+    def __enter__(self) -> _Shown:
+        self.bar.start()
+        self.task = self.bar.add_task("rungs", total=None, said="starting")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.bar.stop()
+
+    def tell(self, design: str, part: str, total: int) -> None:
+        """A part is done."""
+        self.done += 1
+        self.bar.update(self.task, total=total, completed=self.done, said=f"{design}: {part}")
+        if self.bar.disable and self.done * LINES // total > (self.done - 1) * LINES // total:
+            console.print(f"{self.done} of {total} parts", markup=False)

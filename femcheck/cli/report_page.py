@@ -1,0 +1,41 @@
+"""`femcheck report`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from beamopt.cli.progress import console
+from beamopt.errors import InputError
+from beamopt.files import write_atomic
+
+__all__ = ["report_command"]
+
+ENDINGS = (".html", ".htm")
+HEAD = 1000  # bytes at the beginning of a file in which a report has its mark
+
+
+def report_command(runs: Sequence[Path], out: Path, title: str, *, force: bool) -> None:
+    """Write the report of folders to `out`, and say how large it is.
+
+    Raises
+    ------
+    InputError : `out` is no name for a page, or a file that is no report and `force` is off; a
+        folder that no report is made of, or a damaged file in one.
+    """
+    from femcheck.report.page import MARK, report_page
+
+    if out.suffix.lower() not in ENDINGS:
+        raise InputError("--out", "", out.name, "must end in .html")
+    if out.is_dir():
+        raise InputError(out, "", None, "is a folder; name a file")
+    if out.exists() and not force:
+        with out.open("rb") as stream:
+            head = stream.read(HEAD)
+        if MARK.encode() not in head:
+            said = "is no report of ours; --force writes over it all the same"
+            raise InputError(out, "", None, said)
+    page = report_page(runs, title)
+    write_atomic(out, page)
+    size = len(page.encode("utf-8")) / 1e6
+    console.print(f"{out}  {size:.2f} MB", soft_wrap=True, markup=False, highlight=False)

@@ -1,0 +1,1 @@
+"""What every rung says of a design today, held: baselines, and what has moved since."""

@@ -1,0 +1,142 @@
+"""Baseline files: what is held of one design, its digest, and where it stands."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from beamopt.errors import InputError
+from beamopt.files import json_text, write_atomic
+from beamopt.model import Model, Number, parse, read_json
+from beamopt.model import quantity as described
+from femcheck.regression.held import LADDER, Held
+from femcheck.regression.held_design import HeldDesign, design_digest
+from femcheck.regression.kept_mesh import mesh_digest
+
+__all__ = ["Baseline", "baseline_file", "check_unchanged", "read_baseline", "write_baseline"]
+
+SCHEMA = "femcheck-baseline/1"
+
+
+def _known(rung: str) -> str:
+    if rung not in LADDER:
+        raise ValueError(f"one of {', '.join(LADDER)}")
+    return rung
+
+
+class Entry(Model):
+    """One thing held; see `Held`."""
+
+    rung: Annotated[str, AfterValidator(_known)] = described(..., "of the ladder")
+    resolution: str = described(..., "how fine, for people")
+    law: str = described(..., "of the material")
+    quantity: str = described(..., "what the rows are")
+    unit: str = described(..., "of the numbers")
+    rows: dict[str, tuple[Number, ...] | str] = described(..., "numbers, or why there are none")
+    tolerance: Number = described(..., "how far a row may move", low=0)
+    source: str = described(..., "where the tolerance comes from")
+
+    @property
+    def held(self) -> Held:
+        """What it holds."""
+        return Held(**{name: getattr(self, name) for name in type(self).model_fields})
+
+
+class Origin(Model):
+    """Of which design it is."""
+
+    digest: str = described(..., "of all that its tips depend on")
+    file: str | None = described(None, "relative to this file; none for one of the package's")
+
+
+class Baseline(Model):
+    """What is held of one design."""
+
+    schema_: Literal["femcheck-baseline/1"] = Field(alias="schema")
+    name: str = described(..., "of the design")
+    design: Origin = described(..., "digest and file")
+    mesh: str | None = described(None, "digest of its kept section mesh, where it has a solid")
+    held: tuple[Entry, ...] = described(..., "from the lowest rung on")
+
+    @property
+    def rungs(self) -> frozenset[str]:
+        """The rungs that are held."""
+        return frozenset(entry.rung for entry in self.held)
+
+
+def baseline_file(folder: Path, name: str) -> Path:
+    """Where the baseline of a design stands."""
+    return folder / f"{name}.json"
+
+
+def write_baseline(folder: Path, design: HeldDesign, held: tuple[Held, ...]) -> Path:
+    """Write what is held of a design, with no more digits than its tolerances leave a meaning to.
+
+    Raises
+    ------
+    InputError : the design itself stands under that name.
+    OSError : the folder is missing or can not be written.
+    """
+    file = baseline_file(folder, design.name)
+    if design.file is not None and file.resolve() == design.file.resolve():
+        raise InputError(file, "", None, "is the design itself: another folder for its baseline")
+    where = None if design.file is None else Path(os.path.relpath(design.file, folder)).as_posix()
+    content = {
+        "design": {"digest": design_digest(design.design), "file": where},
+        "held": [_entry(one.written()) for one in held],
+        "mesh": mesh_digest(design.mesh) if _meshed(held) else None,
+        "name": design.name,
+    }
+    write_atomic(file, _readable(json_text({"schema": SCHEMA} | content)))
+    return file
+
+
+def _readable(text: str) -> str:
+    """JSON with "mm³" in place of its escapes."""
+    return re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), text)
+
+
+def _meshed(held: tuple[Held, ...]) -> bool:
+    return any(LADDER.index(one.rung) >= LADDER.index("kept mesh") for one in held)
+
+
+def _entry(held: Held) -> dict[str, object]:
+    rows = {name: row if isinstance(row, str) else list(row) for name, row in held.rows.items()}
+    values = {name: getattr(held, name) for name in sorted(Entry.model_fields)}
+    return values | {"rows": rows}
+
+
+def read_baseline(file: Path) -> Baseline:
+    """Read a baseline.
+
+    Raises
+    ------
+    InputError : it is missing, damaged, or of another schema.
+    """
+    if not file.exists():
+        raise InputError(file, "", None, "no baseline: `femcheck baseline` writes it")
+    data = read_json(file)
+    schema = data.get("schema")
+    if schema != SCHEMA:
+        raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
+    return parse(Baseline, data, file)
+
+
+def check_unchanged(file: Path, baseline: Baseline, design: HeldDesign) -> None:
+    """Refuse to compare results of another design, or on another mesh.
+
+    Raises
+    ------
+    InputError : the design or its mesh changed since the baseline was written.
+    """
+    again = "that says nothing of the code; write the baseline anew if it is meant"
+    if baseline.design.digest != design_digest(design.design):
+        said = f"{design.name} is not the design that this was written of any more; {again}"
+        raise InputError(file, "design.digest", None, said)
+    if baseline.mesh is not None and baseline.mesh != mesh_digest(design.mesh):
+        said = f"{design.mesh} is not the mesh that this was written on any more; {again}"
+        raise InputError(file, "mesh", None, said)

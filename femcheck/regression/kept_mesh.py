@@ -1,0 +1,97 @@
+"""Section meshes that are kept, so that what a solid says does not depend on gmsh's version."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from beamopt.design import Design
+from beamopt.errors import InputError
+from beamopt.outline.build import build_outline
+from beamopt.outline.outline import Outline
+from femcheck.mesh.geo import SectionSizes
+from femcheck.mesh.gmsh_section import Mesher, MeshFailure, read_section
+from femcheck.mesh.section_mesh import SectionMesh
+
+__all__ = ["KeptMesher", "make_section", "mesh_digest", "read_kept", "write_section"]
+
+SAGITTA = 0.4  # mm: chords ten times farther from the smooth outline than a design's own
+SIZES = SectionSizes(factor=4.0, growth=5.0)
+MATERIAL_GROUP = 10
+
+
+@dataclass(frozen=True, slots=True)
+class KeptMesher(Mesher):
+    """Gives one mesh, whatever outline it is asked about."""
+
+    section: SectionMesh | None = None
+
+    def mesh(self, outline: Outline, sizes: SectionSizes) -> SectionMesh | MeshFailure:
+        """The kept mesh."""
+        assert self.section is not None
+        return self.section
+
+
+def make_section(design: Design) -> SectionMesh:
+    """A small mesh of a design's section: the same rules, its curves in longer chords.
+
+    Raises
+    ------
+    InputError : there is no such mesh.
+    """
+    outline = build_outline(design.grid.build(), design.source, design.seal.rules, SAGITTA)
+    section = Mesher().mesh(outline, SIZES)
+    if isinstance(section, MeshFailure):
+        raise InputError("", "mesh", None, f"no mesh of the section: {section}")
+    return section
+
+
+def read_kept(file: Path) -> SectionMesh:
+    """A kept mesh.
+
+    Raises
+    ------
+    InputError : its file is missing or damaged.
+    """
+    _require(file)
+    section = read_section(file)
+    if isinstance(section, MeshFailure):
+        raise InputError(file, "", None, str(section))
+    return section
+
+
+def write_section(file: Path, section: SectionMesh) -> None:
+    """Write a mesh as gmsh 2.2 text; a kill never leaves half of it."""
+    import meshio
+
+    cells = [("triangle", section.triangles), ("line", section.edges)]
+    groups = [np.full(len(section.triangles), MATERIAL_GROUP), section.supply + 1]
+    marked = {"gmsh:physical": groups, "gmsh:geometrical": groups}
+    flat = np.column_stack([section.points, np.zeros(len(section.points))])
+    mesh = meshio.Mesh(flat, cells, cell_data=marked)
+    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+    try:
+        meshio.gmsh.write(temporary, mesh, fmt_version="2.2", binary=False)
+        temporary.replace(file)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def mesh_digest(file: Path) -> str:
+    """Tells kept meshes apart.
+
+    Raises
+    ------
+    InputError : the file is missing.
+    """
+    _require(file)
+    return hashlib.blake2b(file.read_bytes(), digest_size=12).hexdigest()
+
+
+def _require(file: Path) -> None:
+    if not file.exists():
+        raise InputError(file, "", None, "missing: `femcheck baseline` writes it")

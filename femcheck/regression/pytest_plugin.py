@@ -1,0 +1,93 @@
+"""A fixture for pytest that holds a project's own designs, as `femcheck regress` holds ours.
+
+def test_the_gripper_stays(hold_design):
+    hold_design("gripper.json")
+
+Loaded with every pytest run: what it needs is imported when a design is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+import pytest
+
+__all__ = ["hold_design"]
+
+UPDATE = "--femcheck-update"
+MOST = 12  # lines of what moved
+
+HoldDesign = Callable[..., None]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option that writes baselines."""
+    parser.getgroup("femcheck").addoption(
+        UPDATE,
+        action="store_true",
+        help="write what the designs of hold_design give today as their baselines",
+    )
+
+
+@pytest.fixture
+def hold_design(request: pytest.FixtureRequest) -> HoldDesign:
+    """Hold a design against its baseline: `hold_design(file, rungs=None)`.
+
+    file : of the design, relative to the test's folder; baseline (and section mesh, where there is
+        a solid) stand in `baselines/` there.
+    rungs : those that are looked at, by their names in `femcheck.regression.held.LADDER`; all that
+        the design has if None.
+    """
+    folder = request.path.parent
+    update = bool(request.config.getoption(UPDATE))
+
+    def hold(file: str | Path, rungs: Collection[str] | None = None) -> None:
+        __tracebackhide__ = True
+        said = _hold(folder / file, folder / "baselines", rungs, update)
+        if said:
+            pytest.fail(said, pytrace=False)
+
+    return hold
+
+
+def _hold(file: Path, folder: Path, rungs: Collection[str] | None, update: bool) -> str:
+    """Compare, or write; what is wrong, "" where nothing is."""
+    from dataclasses import replace
+
+    from beamopt.errors import InputError
+    from femcheck.regression.baseline import baseline_file
+    from femcheck.regression.held_design import find_design
+    from femcheck.regression.run import ContradictionError, regress, update_baseline
+
+    _check_rungs(rungs)
+    try:
+        design = find_design(str(file), folder)
+        if update:
+            chosen = design.rungs if rungs is None else frozenset(rungs)
+            update_baseline(replace(design, rungs=chosen), folder)
+            return ""
+        kept = baseline_file(folder, design.name)
+        if not kept.exists():
+            return f"{kept}: no baseline; pytest {UPDATE} writes it"
+        found = regress([str(file)], folder, folder, rungs=rungs)
+    except InputError as error:
+        return f"{error} (pytest {UPDATE} writes baselines anew)"
+    except ContradictionError as error:
+        return f"nothing is written: {error}"
+    if found.holds:
+        return ""
+    lines = [str(one) for one in found.moved[:MOST]]
+    more = len(found.moved) - len(lines)
+    rest = [f"… and {more} more"] if more else []
+    head = f"{len(found.moved)} of {found.rows} rows moved, the lowest rung first:"
+    return "\n  ".join([head, *lines, *rest])
+
+
+def _check_rungs(rungs: Collection[str] | None) -> None:
+    """Refuse names that are no rungs: they would hold nothing."""
+    from femcheck.regression.held import LADDER
+
+    unknown = [rung for rung in rungs or () if rung not in LADDER]
+    if unknown or isinstance(rungs, str):
+        raise ValueError(f"rungs = {rungs!r}: some of {', '.join(LADDER)}")

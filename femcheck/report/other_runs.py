@@ -1,0 +1,104 @@
+"""Searches, and folders of figures such as charts and maps, read back from disk."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from beamopt.model import read_text
+from femcheck.report.content import Record, Table, read_record, read_table
+from femcheck.report.saved_figure import SavedFigure, read_figures
+
+__all__ = ["FigureRun", "SearchRun", "read_figure_run", "read_search_run"]
+
+
+@dataclass(frozen=True, eq=False)
+class SearchRun:
+    """A folder of `beamopt optimize`.
+
+    design_text : the best design's file, "" where nothing could be judged.
+    """
+
+    folder: Path
+    summary: Record
+    provenance: Record
+    tables: tuple[Table, ...]
+    figures: tuple[SavedFigure, ...]
+    design_text: str
+
+    @property
+    def name(self) -> str:
+        """Scene and seed."""
+        return f"{self.summary.text('scene')}, seed {self.summary.number('seed'):.0f}"
+
+    @property
+    def seconds(self) -> float:
+        """Time of the search [s]."""
+        timing = next((one for one in self.tables if one.file.name == "timing.csv"), None)
+        if timing is None:
+            return math.nan
+        whole = [what == "search" for what in timing.column("what")]
+        return float(timing.numbers("value")[whole].sum())
+
+
+@dataclass(frozen=True, eq=False)
+class FigureRun:
+    """A folder of figures with their tables.
+
+    reading : its `reading.md`, "" where there is none.
+    """
+
+    folder: Path
+    provenance: Record
+    tables: tuple[Table, ...]
+    figures: tuple[SavedFigure, ...]
+    reading: str
+
+    @property
+    def verdict(self) -> str:
+        """What it says in one sentence, if it says so."""
+        return self.provenance.text("verdict") if self.provenance.has("verdict") else ""
+
+
+def read_search_run(folder: Path) -> SearchRun:
+    """Read a search.
+
+    Raises
+    ------
+    InputError : the first file that is missing or damaged.
+    """
+    summary = read_record(folder / "summary.json")
+    for key in ("status", "scene", "best.status"):
+        summary.text(key)
+    summary.number("seed")
+    best = folder / "best.json"
+    return SearchRun(
+        folder,
+        summary,
+        read_record(folder / "provenance.json"),
+        _tables(folder),
+        read_figures(folder),
+        read_text(best) if best.exists() else "",
+    )
+
+
+def read_figure_run(folder: Path) -> FigureRun:
+    """Read a folder of figures.
+
+    Raises
+    ------
+    InputError : the first file that is damaged.
+    """
+    reading = folder / "reading.md"
+    return FigureRun(
+        folder,
+        read_record(folder / "provenance.json"),
+        _tables(folder),
+        read_figures(folder),
+        read_text(reading) if reading.exists() else "",
+    )
+
+
+def _tables(folder: Path) -> tuple[Table, ...]:
+    return tuple(read_table(file) for file in sorted(folder.glob("*.csv")))

@@ -1,0 +1,183 @@
+"""A check or a prediction, read back from its folder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beamopt.arrays import FloatArray
+from beamopt.design import load_design
+from beamopt.errors import InputError
+from beamopt.model import read_text
+from beamopt.workspace import NODES
+from femcheck.check.subject import LoadedDesignError, Subject
+from femcheck.continuation.outcome import Status
+from femcheck.report.content import Record, Table, read_record, read_table
+from femcheck.report.saved_figure import SavedFigure, read_figures
+
+__all__ = ["Combinations", "SolidRun", "read_solid_run"]
+
+KINDS = ("implementation", "prediction")
+AXES = ("x", "y", "z")
+SAME = 1e-6  # kPa, between a table's pressures and the design's
+
+
+@dataclass(frozen=True, eq=False)
+class Combinations:
+    """27 rows, beam beside solid, in the order of `pressure_grid`.
+
+    length : of the actuator [mm]: where the tip stands without pressure.
+    pressures : (27, 3) [kPa]. beam, solid : (27, 3) tips [mm], NaN where the solid has no answer.
+    difference : (27,) between them [mm]. share : (27,) of the displacement; both may be NaN.
+    volume_ratios : (27, 3) of the chambers to those at rest, or NaN.
+    stretch : (27,) largest principal stretch; NaN where the table does not have it.
+    statuses : (27,) how each ended. ends_at : (27,) load at which its path ends [kPa], or NaN.
+    """
+
+    length: float
+    pressures: FloatArray
+    beam: FloatArray
+    solid: FloatArray
+    difference: FloatArray
+    share: FloatArray
+    volume_ratios: FloatArray
+    stretch: FloatArray
+    statuses: tuple[str, ...]
+    ends_at: FloatArray
+
+    @property
+    def answered(self) -> NDArray[np.bool_]:
+        """(27,) whether the solid has an answer."""
+        return np.asarray(~np.isnan(self.solid[:, 0]))
+
+    @property
+    def loaded(self) -> NDArray[np.bool_]:
+        """(27,) whether any supply has pressure."""
+        return np.asarray(self.pressures.any(axis=1))
+
+    @property
+    def displacement(self) -> FloatArray:
+        """(27,) of the beam's tip [mm]: away from where it stands without pressure."""
+        return np.asarray(np.linalg.norm(self.beam - [0.0, 0.0, self.length], axis=1))
+
+    @property
+    def solid_displacement(self) -> FloatArray:
+        """(27,) of the solid's tip [mm]; NaN without an answer."""
+        return np.asarray(np.linalg.norm(self.solid - [0.0, 0.0, self.length], axis=1))
+
+    def ending(self, row: int) -> str:
+        """How a combination ended, and where."""
+        status, at = self.statuses[row], self.ends_at[row]
+        return status if np.isnan(at) else f"{status} at P = {at:.4g} kPa"
+
+
+@dataclass(frozen=True, eq=False)
+class SolidRun:
+    """A folder of `femcheck run`.
+
+    folder : where it is. summary, provenance : its JSON files.
+    subject : the design, its name, its beam.
+    combinations : None where there was no solid at all.
+    timing, tables : what it cost, and every CSV file. figures : those that stand in the folder.
+    design_text : the design file, which tells runs of the same design.
+    """
+
+    folder: Path
+    summary: Record
+    provenance: Record
+    subject: Subject
+    combinations: Combinations | None
+    timing: Table
+    tables: tuple[Table, ...]
+    figures: tuple[SavedFigure, ...]
+    design_text: str
+
+    @property
+    def is_prediction(self) -> bool:
+        """Whether a material was asked about, not the implementation."""
+        return self.summary.text("verdict.kind") == "prediction"
+
+    @cached_property
+    def seconds(self) -> float:
+        """Processor time of all cases [s]."""
+        whole = [what.endswith(" all") for what in self.timing.column("what")]
+        return float(self.timing.numbers("value")[whole].sum())
+
+
+def read_solid_run(folder: Path) -> SolidRun:
+    """Read a check or a prediction.
+
+    Raises
+    ------
+    InputError : the first file that is missing or damaged, and where.
+    """
+    summary = read_record(folder / "summary.json")
+    kind = summary.text("verdict.kind")
+    if kind not in KINDS:
+        raise InputError(summary.file, "verdict.kind", kind, f"one of {', '.join(KINDS)}")
+    subject = _subject(folder, summary.text("design"))
+    name = "compare.csv" if kind == "prediction" else "table.csv"
+    combinations = None
+    if (folder / name).exists() or summary.has("solids"):
+        combinations = _combinations(read_table(folder / name), subject, kind == "prediction")
+    return SolidRun(
+        folder,
+        summary,
+        read_record(folder / "provenance.json"),
+        subject,
+        combinations,
+        read_table(folder / "timing.csv"),
+        tuple(read_table(file) for file in sorted(folder.glob("*.csv"))),
+        read_figures(folder),
+        read_text(folder / "design.json"),
+    )
+
+
+def _subject(folder: Path, name: str) -> Subject:
+    file = folder / "design.json"
+    try:
+        return Subject(name, load_design(file))
+    except LoadedDesignError as error:
+        raise InputError(file, "", None, str(error)) from None
+
+
+def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinations:
+    if predicted:
+        table = table.where("mesh", "standard")
+    pressures = table.numbers("p1", "p2", "p3")
+    if len(pressures) != NODES:
+        said = f"must hold {NODES} combinations (is the file whole?)"
+        raise InputError(table.file, "rows", len(pressures), said)
+    wrong = np.flatnonzero(~(np.abs(pressures - subject.pressures) <= SAME).all(axis=1))
+    if wrong.size:
+        at = f"{', '.join(f'{value:g}' for value in subject.pressures[wrong[0]])} kPa"
+        place = f"combination {wrong[0] + 1}"
+        raise InputError(table.file, place, table.rows[wrong[0]][:3], f"must be at {at}")
+    beam = table.numbers(*(f"beam_{axis}" for axis in AXES))
+    if np.isnan(beam).any():
+        raise InputError(table.file, "beam_x", "", "must be a number in every row")
+    solid = table.numbers(*(f"solid_{axis}" for axis in AXES))
+    statuses = tuple(table.column("status"))
+    for row, status in enumerate(statuses):
+        if status == Status.CONVERGED.value and np.isnan(solid[row]).any():
+            raise InputError(table.file, f"combination {row + 1}, solid_x", "", "must be a number")
+    difference, share = table.numbers("difference_mm", "difference_of_displacement").T
+    names = ("largest_stretch", "ends_at_kpa")
+    extra = table.numbers(*names) if predicted else np.full((NODES, 2), np.nan)
+    ratios = table.numbers(*(f"volume_ratio_{supply}" for supply in (1, 2, 3)))
+    return Combinations(
+        subject.design.actuator.length,
+        pressures,
+        beam,
+        solid,
+        difference,
+        share,
+        ratios,
+        extra[:, 0],
+        statuses,
+        extra[:, 1],
+    )

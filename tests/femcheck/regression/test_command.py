@@ -1,0 +1,211 @@
+"""`femcheck baseline` and `femcheck regress` as a person meets them."""
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import femcheck.regression.rods
+from beamopt.arrays import FloatArray
+from beamopt.rod.response import LinearResponse
+from femcheck.cli.application import run
+from femcheck.models.reply import Reply
+from femcheck.regression.baseline import read_baseline
+from femcheck.regression.held import LADDER
+from tests.femcheck.regression.small import saved
+
+ROOT = Path(__file__).resolve().parents[3]
+HERE = ["--workers", "1"]
+WRITE = ["baseline", "small.json", "--out", "kept", *HERE]
+HOLD = ["regress", "--baseline", "kept", *HERE]
+
+Change = Callable[[dict[str, Any]], object]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    saved(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def kept(folder: Path) -> Path:
+    assert run(WRITE) == 0
+    return folder / "kept" / "small.json"
+
+
+def changed(file: Path, change: Change) -> None:
+    data = json.loads(file.read_text())
+    change(data)
+    file.write_text(json.dumps(data))
+
+
+def complaint(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    capsys.readouterr()
+    assert run(arguments) == 2
+    _, err = capsys.readouterr()
+    assert err.count("\n") == 1
+    return err
+
+
+def test_what_was_written_holds(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = kept.read_bytes()
+    assert run(HOLD) == 0
+    said = capsys.readouterr().out.splitlines()[-1]
+    assert "of 1 designs" in said
+    assert "nothing moved" in said
+    assert run([*WRITE, "--force"]) == 0
+    assert kept.read_bytes() == before
+    assert (kept.parent / "provenance.json").exists()
+
+
+def test_every_tolerance_has_its_source(kept: Path) -> None:
+    found = [entry.held for entry in read_baseline(kept).held]
+    assert [one.rung for one in found] == sorted((one.rung for one in found), key=LADDER.index)
+    assert {one.rung for one in found} == {"section", "outline", "response", "raster", "beam"}
+    for one in found:
+        exact = one.source == "counts are exact"
+        assert exact or one.source.startswith("rounding of a closed form: 1e-09 of ")
+        assert (one.tolerance == 0) == exact
+    tips = next(one for one in found if one.rung == "beam")
+    assert tips.tolerance == pytest.approx(60e-9)
+    assert len(tips.rows) == 27
+
+
+def test_a_sign_in_the_code_is_named(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    strains = LinearResponse.strains
+
+    def wrong(self: LinearResponse, pressures: FloatArray) -> FloatArray:
+        return strains(self, pressures) * np.array([1.0, 1.0, -1.0])
+
+    monkeypatch.setattr(LinearResponse, "strains", wrong)
+    assert run([*HOLD, "--out", "moved.csv"]) == 1
+    out = capsys.readouterr().out
+    for word in ("design", "held", "now", "moved", "tolerance", "small", "raster"):
+        assert word in out
+    assert "lowest rung that moved: raster " in out
+    assert "(tolerance 6e-08)" in out
+    with Path("moved.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert {row["rung"] for row in rows} == {"raster", "beam"}
+    assert all(float(row["moved"]) > 1e-3 for row in rows)
+
+
+def test_an_equilibrium_that_vanished_is_named(
+    kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def lose(data: dict[str, Any]) -> None:
+        tips = next(one for one in data["held"] if one["rung"] == "beam")
+        tips["rows"]["0, 0, 20 kPa"] = "buckled"
+
+    changed(kept, lose)
+    assert run(HOLD) == 1
+    out = capsys.readouterr().out
+    assert "lowest rung that moved: beam of small: tips at 0, 0, 20 kPa: " in out
+    assert "held: buckled" in out
+
+
+def test_a_rung_that_breaks_is_named(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def breaks(*_: object) -> Reply:
+        raise ZeroDivisionError("by nothing")
+
+    monkeypatch.setattr(femcheck.regression.rods.RodOnOutline, "reply", breaks)
+    assert run(HOLD) == 1
+    out = capsys.readouterr().out
+    assert "lowest rung that moved: beam of small: tips at 0, 0, 0 kPa: " in out
+    assert "ZeroDivisionError: by nothing" in out
+
+
+def test_rods_under_loads_are_held_by_two_methods(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    loads = {"mount_z": [1.0, 0.0, 0.0], "mount_x": [0.0, 0.0, -1.0], "density": 3000.0}
+    saved(folder, loads=loads)
+    assert run(WRITE) == 0
+    found = {one.rung: one.held for one in read_baseline(folder / "kept" / "small.json").held}
+    assert {"loads", "torsion", "rod under load", "rod, modes", "rod, elements"} <= set(found)
+    assert "own estimate" in found["rod, modes"].source
+    assert "from 32 and 64 elements" in found["rod, elements"].source
+    assert 0 < found["rod, modes"].tolerance < found["rod, elements"].tolerance < 0.01
+    assert run(HOLD) == 0
+
+
+def test_rungs_that_contradict_each_other_are_not_written(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    saved(folder, loads={"density": 3000.0, "mount_z": [1.0, 0.0, 0.0], "mount_x": [0.0, 1.0, 0.0]})
+    honest = femcheck.regression.rods.RodByMethod.reply
+
+    def shifted(self: Any, question: Any, workers: int = 0) -> Reply:
+        reply = honest(self, question, workers)
+        return Reply(reply.tips + (self.method == "elements"), reply.reasons, errors=reply.errors)
+
+    monkeypatch.setattr(femcheck.regression.rods.RodByMethod, "reply", shifted)
+    assert run(WRITE) == 1
+    assert "small: rod, modes and rod, elements: tips at " in capsys.readouterr().out
+    assert not (folder / "kept" / "small.json").exists()
+
+
+def test_a_baseline_is_not_written_over(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = kept.read_bytes()
+    assert "small.json: there already; --force" in complaint(WRITE, capsys)
+    assert kept.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda data: data.update(schema="femcheck-baseline/2"), "this version reads"),
+        (lambda data: data["held"][0].pop("tolerance"), "held[0].tolerance: must be given"),
+        (lambda data: data["held"][0].update(rung="roof"), "held[0].rung = 'roof': one of section"),
+        (lambda data: data["held"][0].update(tolerance=-1), "allowed: at least 0"),
+        (lambda data: data["held"][0]["rows"].update(material=[True]), "must be a number"),
+        (lambda data: data["design"].update(digest="0"), "not the design that this was written of"),
+    ],
+)
+def test_a_damaged_baseline_is_one_line(
+    kept: Path, change: Change, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    changed(kept, change)
+    found = complaint(HOLD, capsys)
+    assert "kept/small.json" in found
+    assert said in found
+
+
+def test_half_a_baseline_is_one_line(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kept.write_bytes(kept.read_bytes()[:-100])
+    assert "kept/small.json" in complaint(HOLD, capsys)
+
+
+def test_a_design_that_changed_is_no_result_that_moved(
+    kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    saved(Path(), wall_elements=2)
+    assert "small is not the design that this was written of" in complaint(HOLD, capsys)
+    saved(Path(), notes={"seen": "today"})
+    assert run(HOLD) == 0
+
+
+def test_what_is_not_there_is_one_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "kept: no baseline here" in complaint(HOLD, capsys)
+    assert "small.json: no baseline" in complaint([*HOLD, "small.json"], capsys)
+    assert "nothing: no such design" in complaint(["baseline", "nothing"], capsys)
+    twice = ["baseline", "small.json", "./small.json", "--out", "kept"]
+    assert "twice" in complaint(twice, capsys)
+
+
+def test_the_committed_baseline_of_one_design_holds(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert run(["regress", "two-segments", "gravity", *HERE]) == 0
+    assert "of 2 designs" in capsys.readouterr().out

@@ -1,0 +1,141 @@
+"""Solids that are held: on a kept mesh, with tolerances from two numbers of layers."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import femcheck.check.case
+import femcheck.models.solid
+import femcheck.regression.solids
+from beamopt.arrays import FloatArray
+from beamopt.errors import InputError
+from femcheck.material.rigid_section import RigidSection
+from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
+from femcheck.regression.baseline import read_baseline
+from femcheck.regression.held import Held
+from femcheck.regression.held_design import HeldDesign, find_design
+from femcheck.regression.kept_mesh import KeptMesher, mesh_digest, read_kept, write_section
+from femcheck.regression.measure import parts_of
+from femcheck.regression.run import ContradictionError, regress, update_baseline
+from femcheck.solid.body import Body
+from tests.femcheck.regression.small import saved
+
+RUNGS = frozenset(
+    {"outline", "kept mesh", "beam on kept mesh", "gmsh", "solid at rest", "solid, rigid-section"}
+)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Some seconds: two meshes, and one solid on two numbers of layers."""
+    folder = tmp_path_factory.mktemp("kept")
+    update_baseline(sealed(folder), folder / "baselines")
+    return folder
+
+
+def sealed(folder: Path) -> HeldDesign:
+    file = saved(folder, "disc", sealed=True)
+    return replace(find_design(str(file), folder / "baselines"), rungs=RUNGS)
+
+
+def lowest(folder: Path) -> str:
+    """The lowest rung that moved; "" where none did."""
+    here = folder / "baselines"
+    found = regress([str(folder / "disc.json")], here, here).lowest
+    return "" if found is None else found.held.rung
+
+
+def held(folder: Path, rung: str, quantity: str) -> Held:
+    baseline = read_baseline(folder / "baselines" / "disc.json")
+    return next(e.held for e in baseline.held if (e.rung, e.quantity) == (rung, quantity))
+
+
+def test_a_solid_holds_within_what_its_layers_leave(kept: Path) -> None:
+    assert lowest(kept) == ""
+    tips, beam = held(kept, "solid, rigid-section", "tips"), held(kept, "beam on kept mesh", "tips")
+    assert "from 2 and 3 layers, order 4" in tips.source
+    for row, tip in tips.rows.items():
+        assert isinstance(tip, tuple)
+        moved = math.dist(tip, (0.0, 0.0, 60.0))
+        assert 0 < tips.tolerance < 1e-3 * moved
+        assert math.dist(tip, beam.rows[row]) <= tips.tolerance  # type: ignore[arg-type]
+
+
+def test_a_wrong_cap_is_seen_at_rest(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(body: Body) -> FloatArray:
+        return body.extrusion.section.moments.chamber_areas * 1.01
+
+    monkeypatch.setattr(Body, "cap_areas", property(wrong))
+    monkeypatch.setattr(femcheck.check.case, "_WORKSHOPS", {})
+    assert lowest(kept) == "solid at rest"
+
+
+def test_a_softer_law_is_seen_in_the_solid(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        femcheck.models.solid, "RigidSection", lambda E, c: RigidSection(0.999 * E, c)
+    )
+    assert lowest(kept) == "solid, rigid-section"
+
+
+def test_a_solid_that_is_not_the_beam_is_not_written(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        femcheck.models.solid, "RigidSection", lambda E, c: RigidSection(0.99 * E, c)
+    )
+    before = (kept / "baselines" / "disc.json").read_bytes()
+    with pytest.raises(ContradictionError, match="beam on kept mesh and solid, rigid-section"):
+        update_baseline(sealed(kept), kept / "baselines")
+    assert (kept / "baselines" / "disc.json").read_bytes() == before
+
+
+def test_gmsh_is_held_to_the_outline(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        femcheck.regression.solids.Mesher, "mesh", lambda *_: MeshFailure(MeshProblem.HUNG, "1 s")
+    )
+    monkeypatch.setattr(KeptMesher, "mesh", lambda self, *_: self.section)
+    assert lowest(kept) == "gmsh"
+
+
+def test_a_mesh_that_changed_is_no_result_that_moved(kept: Path, tmp_path: Path) -> None:
+    for file in (kept / "disc.json", *(kept / "baselines").glob("disc.*")):
+        to = tmp_path / file.relative_to(kept)
+        to.parent.mkdir(exist_ok=True)
+        to.write_bytes(file.read_bytes())
+    mesh = tmp_path / "baselines" / "disc.msh"
+    mesh.write_bytes(mesh.read_bytes() + b"\n")
+    with pytest.raises(InputError, match=r"mesh: .*disc\.msh is not the mesh"):
+        lowest(tmp_path)
+    mesh.unlink()
+    with pytest.raises(InputError, match=r"disc\.msh: missing"):
+        lowest(tmp_path)
+    mesh.write_text("nothing")
+    with pytest.raises(InputError, match=r"disc\.msh: gmsh wrote no mesh"):
+        read_kept(mesh)
+
+
+def test_a_mesh_is_read_as_it_was_written(kept: Path, tmp_path: Path) -> None:
+    first = read_kept(kept / "baselines" / "disc.msh")
+    write_section(tmp_path / "again.msh", first)
+    again = read_kept(tmp_path / "again.msh")
+    for name in ("points", "triangles", "edges", "supply"):
+        assert np.array_equal(getattr(first, name), getattr(again, name))
+    assert mesh_digest(tmp_path / "again.msh") == mesh_digest(kept / "baselines" / "disc.msh")
+
+
+def test_which_parts_a_design_has(kept: Path) -> None:
+    assert parts_of(sealed(kept)) == ["sections", "meshes", "solid, rigid-section"]
+    open_one = find_design("hand_drawn_section", kept)
+    assert parts_of(open_one) == ["sections", "rods"]
+    loaded = saved(kept, "loaded", sealed=True, loads={"density": 1000.0})
+    assert parts_of(find_design(str(loaded), kept)) == ["sections", "rods"]
+
+
+def test_a_design_is_not_written_over(kept: Path) -> None:
+    before = (kept / "disc.json").read_bytes()
+    with pytest.raises(InputError, match="is the design itself"):
+        update_baseline(replace(sealed(kept), rungs=frozenset({"beam"})), kept)
+    assert (kept / "disc.json").read_bytes() == before

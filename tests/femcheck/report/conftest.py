@@ -1,0 +1,45 @@
+"""Folders that reports are made of: a check and a prediction that take seconds."""
+
+from pathlib import Path
+
+import pytest
+
+import femcheck.picture
+import femcheck.prediction.run
+from femcheck.check.run import check_design
+from femcheck.report.page import report_page
+from tests.femcheck.check.small import here, quick_options, small_subject
+from tests.femcheck.prediction.small import predict
+from tests.femcheck.report.folders import figure_folder
+
+
+@pytest.fixture(scope="session")
+def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A check of an element that locks, so that beam and solid differ. Two seconds."""
+    folder = tmp_path_factory.mktemp("report") / "checked"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        check_design(small_subject("disc"), folder, quick_options(), pool=here)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def predicted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A prediction that has some answers, and limits below the highest level. Ten seconds."""
+    folder = tmp_path_factory.mktemp("report") / "predicted"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        predict(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def chart(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of a figure with its table and reading."""
+    return figure_folder(tmp_path_factory.mktemp("report") / "chart")
+
+
+@pytest.fixture(scope="session")
+def page(checked: Path, predicted: Path, chart: Path) -> str:
+    """The report of all of them."""
+    return report_page([checked, predicted, chart])
