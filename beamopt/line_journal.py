@@ -26,8 +26,8 @@ class LineJournal:
         self.path = path
         self.kind = kind
         self.entries: list[dict[str, Any]] = []
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.exists() else []
-        whole = [line for line in lines if line.endswith("\n")]
+        lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
+        whole = [line for line in lines if line.endswith(b"\n")]
         if not whole:
             path.write_text(json.dumps(asked) + "\n", encoding="utf-8")
             return
@@ -42,7 +42,8 @@ class LineJournal:
             raise self.damaged()
         self.entries = entries
         if len(whole) < len(lines):  # a kill left half a line
-            path.write_text("".join(whole), encoding="utf-8")
+            with path.open("r+b") as stream:
+                stream.truncate(sum(map(len, whole)))
 
     def damaged(self) -> InputError:
         """What to raise where an entry can not be read."""

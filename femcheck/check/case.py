@@ -70,6 +70,11 @@ class Solid:
         """Its discretisation."""
         return discretise(extrude(self.section, self.heights), self.element)
 
+    def problem(self, body: Body) -> Equilibrium:
+        """The equilibrium of its body, ready to be asked."""
+        winding = wind(body, *self.wound) if self.wound else None
+        return actuator(body, self.law, winding)
+
     def shown(self) -> Shown:
         """Its corners, and the middles of upright edges that are nodes, as a mesh to look at."""
         body = self.body()
@@ -98,6 +103,7 @@ class Case:
     guess : shape to try first; None starts from `start`.
     start : an equilibrium and its pressures; None is the unloaded body.
     seconds : time limit [s].
+    smallest : share of the load below which load steps are given up, and the path is followed.
     """
 
     solid: Solid
@@ -105,6 +111,7 @@ class Case:
     guess: FloatArray | None
     start: tuple[State, FloatArray] | None
     seconds: float
+    smallest: float = LoadSteps().smallest
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,9 +154,7 @@ def workshop(solid: Solid) -> Workshop:
         while len(_WORKSHOPS) >= MOST_WORKSHOPS:
             _WORKSHOPS.pop(next(iter(_WORKSHOPS)))
         body = solid.body()
-        winding = wind(body, *solid.wound) if solid.wound else None
-        problem = actuator(body, solid.law, winding)
-        kept = Workshop(problem, Shapes(body), direct_solver(solid.solver))
+        kept = Workshop(solid.problem(body), Shapes(body), direct_solver(solid.solver))
         _WORKSHOPS[solid.digest] = kept
     return replace(kept, problem=kept.problem.with_law(solid.law))
 
@@ -159,7 +164,7 @@ def solve_case(case: Case) -> CaseResult:
     shop = workshop(case.solid)
     start = case.start or (shop.problem.rest(), np.zeros(3))
     guess = None if case.guess is None else shop.shapes.state(case.guess)
-    steps = LoadSteps(seconds=case.seconds)
+    steps = LoadSteps(smallest=case.smallest, seconds=case.seconds)
     outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
     if outcome.status in LOST and case.pressures.any():
         outcome = _followed(shop, case, outcome)

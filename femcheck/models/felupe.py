@@ -94,7 +94,7 @@ def _unlike(question: Question) -> str | None:
     if not isinstance(law, NeoHookean):
         return f"FElupe is asked for the laws neo-hookean and rigid-section, not for {law.name}"
     if law.volumetric_compliance is not None:
-        return "FElupe is asked for displacements alone: its mixed elements are other ones than ours"
+        return "FElupe is asked for displacements alone: its mixed elements are not ours"
     return None
 
 
