@@ -42,17 +42,25 @@ def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:
     return stream.getvalue()
 
 
-def json_text(value: object) -> str:
-    """JSON with one key a line and lists of plain values on one line."""
-    return _json(value, "") + "\n"
+def json_text(value: object, *, escaped: bool = True) -> str:
+    """JSON with one key a line and lists of plain values on one line.
+
+    escaped : whether characters beyond ASCII are written as escapes. What no file can hold as it
+        is (control characters, halves of a surrogate pair) always is.
+    """
+    text = _json(value, "", escaped) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")  # such a half: JSON's escape
 
 
-def _json(value: object, indent: str) -> str:
+def _json(value: object, indent: str, escaped: bool) -> str:
     inner = indent + " "
     if isinstance(value, dict) and value:
-        items = [f"{inner}{json.dumps(key)}: {_json(item, inner)}" for key, item in value.items()]
+        items = [
+            f"{inner}{json.dumps(key, ensure_ascii=escaped)}: {_json(item, inner, escaped)}"
+            for key, item in value.items()
+        ]
         return "{\n" + ",\n".join(items) + f"\n{indent}}}"
     if isinstance(value, list) and any(isinstance(item, dict) for item in value):
-        items = [inner + _json(item, inner) for item in value]
+        items = [inner + _json(item, inner, escaped) for item in value]
         return "[\n" + ",\n".join(items) + f"\n{indent}]"
-    return json.dumps(value, allow_nan=False)
+    return json.dumps(value, allow_nan=False, ensure_ascii=escaped)

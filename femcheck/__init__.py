@@ -18,7 +18,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from femcheck.accuracy.within import Within, answer_within
+    from femcheck.accuracy.ending import Within
+    from femcheck.accuracy.within import answer_within
     from femcheck.chart.chart import Chart
     from femcheck.chart.run import run_chart
     from femcheck.check.checked import Checked
@@ -41,7 +42,8 @@ if TYPE_CHECKING:
     from femcheck.solid.winding import Wound
 
 _HOMES = {
-    "femcheck.accuracy.within": ("Within", "answer_within"),
+    "femcheck.accuracy.ending": ("Within",),
+    "femcheck.accuracy.within": ("answer_within",),
     "femcheck.chart.chart": ("Chart",),
     "femcheck.chart.run": ("run_chart",),
     "femcheck.check.checked": ("Checked",),

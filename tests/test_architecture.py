@@ -21,7 +21,7 @@ FLOORS = [
         "beamopt.bundled",
         "beamopt.provenance",
     ],
-    ["beamopt.model", "beamopt.folder"],
+    ["beamopt.model", "beamopt.folder", "beamopt.line_journal"],
     ["beamopt.section"],
     ["beamopt.seal"],
     ["beamopt.outline"],

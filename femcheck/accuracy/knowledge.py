@@ -99,8 +99,10 @@ def learnt(charts: Sequence[Path]) -> str:
     from femcheck.chart.kept import read_chart
 
     rows: dict[tuple[str, int, float, float | None], list[tuple[float, float, str]]] = {}
-    for folder in charts:
+    for folder in sorted(charts, key=lambda one: one.name):
         chart = read_chart(folder)
+        if not chart.is_confirmed:
+            raise ValueError(f"{folder.name}: no second family confirms its reference")
         kind = RIGID if chart.question.is_of_the_beam else MATERIAL
         scale = scale_of(chart.question)
         for model, row in chart.solids("wedge18"):

@@ -15,14 +15,8 @@ from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.provenance import provenance
-from femcheck.accuracy.within import (
-    Ending,
-    Progress,
-    RungChoice,
-    Within,
-    answer_within,
-    check_asked,
-)
+from femcheck.accuracy.ending import Ending, Within
+from femcheck.accuracy.within import Progress, RungChoice, answer_within, check_asked
 from femcheck.chart.kept import asked_of, measured_in
 from femcheck.chart.measure import Measured, key_of, written
 from femcheck.check.folder import PACKAGES

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 from itertools import pairwise
 from typing import Literal, Protocol
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
+from femcheck.accuracy.ending import Ending, Tried, Within, is_physical
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.chart.lineup import STIFFER
 from femcheck.chart.measure import Measured
@@ -20,73 +20,18 @@ from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply, cpu_seconds
 from femcheck.models.solid import SolidModel
 
-__all__ = ["Ending", "Kept", "RungChoice", "Tried", "Within", "answer_within", "check_asked"]
+__all__ = ["Kept", "RungChoice", "answer_within", "check_asked"]
 
 RungChoice = Literal["auto", "beam", "solid"]
 
 COMFORT = 0.5  # of the accuracy: the error that a chart has to promise for a level to be begun with
-SAFETY = 2.0  # on an estimate from changes between levels, whose order is that of theory
+SAFETY = 2.0  # on estimates from changes, of the order of theory; covers 2.74 for 4, 1.2 for 2
 FINER_ROD = 100.0  # how many times tighter the rod is solved that the first one is held against
+STIFF = 1.5  # times what stiffer penalties change is left of the usual ones' error: 16/15 in theory
+FINER_TRIANGLES = 4.0  # how many times smaller those are that the usual ones are held against
+TRIANGLES = 1.5  # times what finer ones change is left of their error: 4/3 at first order
 REMAINDER = 8.0  # of the usual penalties' own error over the stiffer ones': 16 in theory
 DEARER = 1.6  # power of the layers with which a solid's cost grows
-
-
-class Ending(Enum):
-    """How it ended; the value is the text shown to people."""
-
-    REACHED = "accuracy reached"
-    NOT_REACHED = "accuracy not reached: the finest model's estimate is larger"
-    TOO_DEAR = "accuracy not reached: a finer solid is expected to take too long"
-    NO_TIP = "no combination has a tip"
-    NO_MODEL = "no model of this law can be made of the design"
-
-
-@dataclass(frozen=True, eq=False)
-class Tried:
-    """A model that was asked, and what it took of the processor [s]."""
-
-    model: Model
-    reply: Reply
-    seconds: float
-
-
-@dataclass(frozen=True, eq=False)
-class Within:
-    """Tips to an accuracy.
-
-    accuracy : asked for [mm]. ending : whether it was reached.
-    reply : of the finest model; empty of tips without one.
-    estimate : (n,) error of each tip [mm]; NaN where that is not known, or there is no tip.
-    tried : all models that were asked, the last one's reply is the answer.
-    reason : why this rung, in a sentence.
-    """
-
-    question: Question
-    accuracy: float
-    ending: Ending
-    reply: Reply | None
-    estimate: FloatArray
-    tried: tuple[Tried, ...]
-    reason: str
-
-    @property
-    def seconds(self) -> float:
-        """Processor time of all of it [s]."""
-        return sum(one.seconds for one in self.tried)
-
-    @property
-    def worst(self) -> float:
-        """Largest estimate [mm]; NaN without any."""
-        known = self.estimate[np.isfinite(self.estimate)]
-        return float(known.max()) if known.size else np.nan
-
-    @property
-    def chosen(self) -> str:
-        """The model whose tips these are."""
-        if self.reply is None:
-            return "none"
-        model = next(one.model for one in self.tried if one.reply is self.reply)
-        return f"{model.family} {model.resolution}".strip()
 
 
 Progress = Callable[[int, int, str], None]
@@ -229,8 +174,6 @@ class _Asking:
             fine = self._refined(replace(level.model, penalties=penalties))
             if len(self.path) <= pairs:
                 continue
-            if not any(reply.found.any() for _, reply in self.path):
-                return self._nothing(Ending.NO_TIP, f"{reason}; {fine.reason}")
             within = self._ended(fine, self._estimate(), reason)
             if within.ending is Ending.REACHED or level is levels[-1]:
                 return within
@@ -243,8 +186,13 @@ class _Asking:
         return max(min(near, default=len(levels) - 1), least)
 
     def _begun(self, model: SolidModel) -> tuple[float, float]:
-        """Ask the coarsest level; of the beam's own law also what stiffer penalties make of it."""
-        reply = self._refined(model, foreseen=3)
+        """Ask the coarsest level, and what finer triangles make of it.
+
+        Of the beam's own law also what stiffer penalties do.
+        """
+        reply = self._refined(model, foreseen=4)
+        finer = self.ask(replace(model, size=model.size / FINER_TRIANGLES), 3)
+        self.of_size = finer.away(reply.tips) * TRIANGLES
         self.of_penalty: FloatArray = np.zeros(len(self.question.pressures))
         if not self.question.is_of_the_beam:
             return model.penalties
@@ -256,6 +204,7 @@ class _Asking:
             self.of_penalty = self.of_penalty / REMAINDER
             self.path = [(model.layers, checked)]
             return STIFFER
+        self.of_penalty = self.of_penalty * STIFF
         return model.penalties
 
     def _refined(self, model: SolidModel, foreseen: int = 1) -> Reply:
@@ -267,7 +216,7 @@ class _Asking:
     def _estimate(self) -> FloatArray:
         """Errors (n,) of the last level: C layers⁻ᵖ with the larger C of the last two changes.
 
-        One change alone may be small by chance. What the penalties leave is added.
+        One change alone may be small by chance. What penalties and triangles leave is added.
         """
         order = ORDERS[RIGID if self.question.is_of_the_beam else MATERIAL]
         constants = [
@@ -275,13 +224,15 @@ class _Asking:
             for (few, coarse), (many, fine) in pairwise(self.path[-3:])
         ]
         left = SAFETY * np.max(constants, axis=0) * self.path[-1][0] ** -order
-        return np.asarray(left + self.of_penalty)
+        return np.asarray(left + self.of_penalty + self.of_size)
 
     def _ended(self, reply: Reply, estimate: FloatArray, reason: str) -> Within:
         """Reached where every tip that any model has is there, and near enough."""
         some = np.any([one.reply.found for one in self.tried], axis=0)
-        unsure = some & ~(estimate <= self.accuracy)
-        if not some.any():
+        lost = [not found and not is_physical(reason) for found, reason in
+                zip(reply.found, reply.reasons, strict=True)]  # fmt: skip
+        unsure = (some & ~(estimate <= self.accuracy)) | np.array(lost)
+        if not some.any() and not any(lost):
             return self._nothing(Ending.NO_TIP, f"{reason}; {reply.reason}")
         ending = Ending.NOT_REACHED if unsure.any() else Ending.REACHED
         return Within(

@@ -57,9 +57,20 @@ class Chart:
         """Of the reference [mm]; infinite where there is none."""
         return np.inf if self.reference is None else self.reference.uncertainty
 
+    @property
+    def made_with(self) -> list[str]:
+        """Threads, processor and versions; several where it was gone on with elsewhere."""
+        return list(
+            dict.fromkeys(row.measured.made_with for row in self.rows if row.measured.made_with)
+        )
+
     def within(self, accuracy: float) -> list[Row]:
-        """Rows with all tips and an error of at most `accuracy` [mm], the cheapest first."""
-        near = [row for row in self.rows if row.is_whole and row.error <= accuracy]
+        """Rows with all tips within `accuracy` [mm] wherever the truth is in its band.
+
+        The cheapest first.
+        """
+        most = accuracy - self.uncertainty
+        near = [row for row in self.rows if row.is_whole and row.error <= most]
         return sorted(near, key=lambda row: row.measured.seconds)
 
     def cheapest(self, accuracy: float, family: str | None = None) -> Row | None:
@@ -82,6 +93,8 @@ class Chart:
             f"{len(self.question.pressures)} tips, error against processor time."
         )
         yield from self._of_reference()
+        if not self.is_confirmed:
+            yield "What follows stands on the reference alone: no other family confirms it."
         for accuracy in ACCURACIES:
             if accuracy < self.uncertainty:
                 yield f"Within {accuracy:g} mm: the reference does not tell."
@@ -113,6 +126,11 @@ class Chart:
                 f"{other.family} extrapolates to within {apart[worst]:.2g} mm of it, "
                 f"bands together {band[worst]:.2g} mm: {verdict}."
             )
+
+    @property
+    def is_confirmed(self) -> bool:
+        """Whether another family was there, and none contradicts the reference."""
+        return self.reference is not None and self.reference.is_confirmed
 
     def _cheapest_solid(self, accuracy: float) -> Row | None:
         solids = (row for row in self.within(accuracy) if row.measured.reply.unknowns)

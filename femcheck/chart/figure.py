@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["chart_figure", "made_with"]
+__all__ = ["chart_figure"]
 
 BLUE, RED, GREEN, VIOLET = SERIES_COLOURS
 DASHED, DOTTED = (0, (5, 2)), (0, (1.2, 1.2))
@@ -46,11 +45,8 @@ SMALLEST = 1e-5  # mm: what is nearer is drawn there
 
 
 @styled
-def chart_figure(chart: Chart, about: Mapping[str, Any]) -> Figure:
-    """Largest error of a tip over processor time, and who is cheapest within each accuracy.
-
-    about : provenance, of which a line says with what it was made.
-    """
+def chart_figure(chart: Chart) -> Figure:
+    """Largest error of a tip over processor time, and who is cheapest within each accuracy."""
     figure = new_figure(9.6, 7.4, below=0.04)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[4.0, 1.35])
     tips = len(chart.question.pressures)
@@ -64,20 +60,8 @@ def chart_figure(chart: Chart, about: Mapping[str, Any]) -> Figure:
     above.legend(loc="center left", bbox_to_anchor=(1.0, 0.45), handlelength=3.4, labelspacing=0.8)
     _cheapest(below, chart)
     below.set_xlabel("processor time for all tips [s]")
-    figure.text(0.01, 0.008, made_with(about), fontsize=7.0, color="#505050")
+    figure.text(0.01, 0.008, " | ".join(chart.made_with), fontsize=7.0, color="#505050")
     return figure
-
-
-def made_with(about: Mapping[str, Any]) -> str:
-    """Threads, processor and versions in a line."""
-    threads = set(about["threads"].values())
-    number = "1 thread" if threads == {"1"} else f"threads: {', '.join(sorted(threads))}"
-    versions = about["versions"]
-    named = ", ".join(
-        f"{name} {versions[name]}" for name in ("beamopt", "numpy", "scikit-fem", "gmsh")
-        if name in versions
-    )  # fmt: skip
-    return f"{number} a model; {about['machine']['processor']}; {named}"
 
 
 def _line(axes: Axes, family: str, rows: list[Row]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from beamopt.line_journal import LineJournal
 from beamopt.model import parse
 from femcheck.chart.chart import Chart
 from femcheck.chart.lineup import line_up
-from femcheck.chart.measure import Measured, key_of, read
+from femcheck.chart.measure import Measured, is_final, key_of, read
 from femcheck.chart.reference import reference_of
 from femcheck.check.options import CheckOptions
 from femcheck.material.fibre import Thread
@@ -23,7 +24,7 @@ from femcheck.models.question import LawChoice, Question
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
 
-__all__ = ["JOURNAL", "KIND", "asked_of", "measured_in", "read_chart"]
+__all__ = ["JOURNAL", "KIND", "asked_of", "chart_of", "measured_in", "read_chart"]
 
 JOURNAL, KIND = "journal.jsonl", "chart"
 SCHEMA = "femcheck-chart/1"
@@ -36,21 +37,36 @@ def asked_of(question: Question) -> dict[str, Any]:
         "name": question.name,
         "design": question.design.json(),
         "law": question.law.question,
+        "solver": question.law.solver,
         "pressures": question.pressures.tolist(),
     }
 
 
 def measured_in(journal: LineJournal) -> dict[str, Measured]:
-    """Replies by model.
+    """Replies by model, the last one of each; those that were cut short are not among them.
 
     Raises
     ------
     InputError : the journal is damaged.
     """
     try:
-        return {line["model"]: read(line) for line in journal.entries}
+        measured = {line["model"]: read(line) for line in journal.entries}
     except (KeyError, TypeError, ValueError):
         raise journal.damaged() from None
+    return {name: one for name, one in measured.items() if is_final(one)}
+
+
+def chart_of(question: Question, measured: Mapping[str, Measured]) -> Chart:
+    """The chart of all that was measured, whichever families were asked for last."""
+    series = [
+        one
+        for one in line_up(question, whatever=True)
+        if any(key_of(model) in measured for model in one.all)
+    ]
+    known = [
+        measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
+    ]
+    return Chart.of(question, known, reference_of(question, series, measured))
 
 
 def read_chart(folder: Path) -> Chart:
@@ -69,26 +85,23 @@ def read_chart(folder: Path) -> Chart:
         question = _question(asked, file)
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(file, "", None, "no journal of a chart") from None
-    measured = measured_in(LineJournal(file, asked, KIND))
-    series = [
-        one for one in line_up(question) if any(key_of(model) in measured for model in one.all)
-    ]
-    known = [
-        measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
-    ]
-    return Chart.of(question, known, reference_of(question, series, measured))
+    return chart_of(question, measured_in(LineJournal(file, asked, KIND)))
 
 
 def _question(asked: dict[str, Any], file: Path) -> Question:
     design = parse(Design, json.loads(asked["design"]), file)
     return Question.of(
-        asked["name"], design, _law(asked["law"]), np.array(asked["pressures"], dtype=np.float64)
+        asked["name"],
+        design,
+        _law(asked["law"], asked["solver"]),
+        np.array(asked["pressures"], dtype=np.float64),
     )
 
 
-def _law(asked: dict[str, Any]) -> LawChoice:
+def _law(asked: dict[str, Any], solver: str) -> LawChoice:
     """Of `question` of the options."""
     solid: dict[str, Any] = {
+        "solver": solver,
         "element": asked["element"],
         "layers": asked["layers"],
         "grading": asked["grading"],

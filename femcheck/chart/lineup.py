@@ -53,8 +53,12 @@ class Series:
                 yield extra
 
 
-def line_up(question: Question, families: Sequence[str] | None = None) -> list[Series]:
+def line_up(
+    question: Question, families: Sequence[str] | None = None, *, whatever: bool = False
+) -> list[Series]:
     """All series that can be asked, or those of these families.
+
+    whatever : also those that can not be asked here, as a library is missing.
 
     Raises
     ------
@@ -66,7 +70,7 @@ def line_up(question: Question, families: Sequence[str] | None = None) -> list[S
     found = []
     for series in _all(question):
         wanted = families is None or series.family in families
-        if wanted and series.models[0].refuses(question) is None:
+        if wanted and (whatever or series.models[0].refuses(question) is None):
             found.append(series)
     return found
 

@@ -23,12 +23,13 @@ class Limit:
     """What a family converges to.
 
     tips : (n, 3) extrapolated [mm]. band : (n,) what extrapolation moved them by in all, which
-    the true value is taken to be within [mm].
+    the true value is taken to be within [mm]. is_whole : whether all that can be refined was.
     """
 
     family: str
     tips: FloatArray
     band: FloatArray
+    is_whole: bool = True
 
     @property
     def uncertainty(self) -> float:
@@ -65,7 +66,9 @@ class Reference(Limit):
 def reference_of(
     question: Question, series: Sequence[Series], measured: Mapping[str, Measured]
 ) -> Reference | None:
-    """The limit with the narrowest band; None where nothing can be told.
+    """The limit with the narrowest band of those that were refined in all respects.
+
+    None where there is none. The others are held against it.
 
     Under the beam's own law that is the closed form, or the rod to its tightest tolerance.
     """
@@ -75,9 +78,12 @@ def reference_of(
     known = [limit for limit in limits if np.isfinite(limit.uncertainty)]
     if not known:
         return None
-    best = min(known, key=lambda limit: limit.uncertainty)
+    whole = [limit for limit in known if limit.is_whole]
+    if not whole:
+        return None
+    best = min(whole, key=lambda limit: limit.uncertainty)
     others = tuple(limit for limit in known if limit is not best)
-    return Reference(best.family, best.tips, best.band, others)
+    return Reference(best.family, best.tips, best.band, others=others)
 
 
 LEAST_ORDER = 1.0
@@ -134,15 +140,19 @@ def _limit(series: Series, measured: Mapping[str, Measured]) -> Limit | None:
     limit = tips + change / (finer**order - 1)
     band = np.linalg.norm(change, axis=1) / (finer**least - 1)
     by_layers = {model.layers: own for model, own in solved}
-    for extra in (series.sized, series.stiffer):
-        if extra is None or key_of(extra) not in measured or extra.layers not in by_layers:
+    extras = [extra for extra in (series.sized, series.stiffer) if extra is not None]
+    is_whole = series.sized is not None
+    for extra in extras:
+        if key_of(extra) not in measured or extra.layers not in by_layers:
+            is_whole = False
             continue
         moved = measured[key_of(extra)].reply.tips - by_layers[extra.layers]
         if not np.isfinite(moved).any():  # it was left out
+            is_whole = False
             continue
         limit = limit + moved
         band = band + np.linalg.norm(moved, axis=1)
-    return Limit(series.family, limit, np.asarray(band))
+    return Limit(series.family, limit, np.asarray(band), is_whole and bool(np.isfinite(band).any()))
 
 
 def _observed_order(solved: Sequence[tuple[int, FloatArray]]) -> float:

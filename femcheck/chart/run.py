@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,11 +20,10 @@ from beamopt.provenance import provenance
 from beamopt.study.pool import processes
 from femcheck.chart.chart import ACCURACIES, Chart, Row
 from femcheck.chart.figure import chart_figure
-from femcheck.chart.kept import JOURNAL, KIND, asked_of, measured_in
+from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
-from femcheck.chart.reference import reference_of
-from femcheck.check.folder import PACKAGES
+from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, nothing
 from femcheck.models.solid import SolidModel
@@ -88,8 +88,7 @@ def run_chart(
     if progress is not None:
         progress(len(asked & measured.keys()), len(asked), "starting")
     _ask(question, series, measured, budget or Budget(), lambda: pool(workers), workers, keep)
-    known = [measured[key_of(model)] for one in series for model in one.all]
-    chart = Chart.of(question, known, reference_of(question, series, measured))
+    chart = chart_of(question, measured)
     _write(chart, out, workers)
     return chart
 
@@ -105,23 +104,47 @@ def _ask(
 ) -> None:
     """Each series from coarse to fine; a finer model waits until its cost can be guessed."""
     left = {one.family: [m for m in one.all if key_of(m) not in measured] for one in series}
-    by_family = {one.family: one for one in series}
-    running: dict[Future[Measured], tuple[str, Model]] = {}
-    with pool() as executor:
-        while any(left.values()) or running:
-            busy = {family for family, _ in running.values()}
-            for family in [name for name, waiting in left.items() if waiting]:
-                if len(running) >= workers or family in busy:
-                    continue
-                model = left[family].pop(0)
-                if _guessed(by_family[family], model, measured) > budget.seconds:
-                    keep(_left_out(question, model, budget))
-                    continue
-                running[executor.submit(measure, question, model)] = family, model
-            finished, _ = wait(running, return_when=FIRST_COMPLETED) if running else ((), ())
-            for future in finished:
-                running.pop(future)
-                keep(future.result())
+    while any(left.values()):
+        running: dict[Future[Measured], tuple[str, Model]] = {}
+        with pool() as executor:
+            try:
+                while _begin(
+                    question, series, left, measured, running, budget, executor, workers, keep
+                ):
+                    finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                    for future in finished:
+                        measured_one = future.result()
+                        running.pop(future)
+                        keep(measured_one)
+            except BrokenProcessPool:
+                for _, model in running.values():  # one of them is to blame; --resume asks again
+                    keep(_without(question, model, Status.STOPPED.value))
+
+
+def _begin(
+    question: Question,
+    series: Sequence[Series],
+    left: dict[str, list[Model]],
+    measured: dict[str, Measured],
+    running: dict[Future[Measured], tuple[str, Model]],
+    budget: Budget,
+    executor: Executor,
+    workers: int,
+    keep: Callable[[Measured], None],
+) -> bool:
+    """Have as many models asked as there are workers, one of a family; whether any is running."""
+    busy = {name for name, _ in running.values()}
+    for one in series:
+        waiting = left[one.family]
+        if one.family in busy:  # what is coming tells what the next one will cost
+            continue
+        while waiting and _guessed(one, waiting[0], measured) > budget.seconds:
+            reason = f"left out: expected to take more than {budget.seconds:g} s"
+            keep(_without(question, waiting.pop(0), reason))
+        if waiting and len(running) < workers:
+            model = waiting.pop(0)
+            running[executor.submit(measure, question, model)] = one.family, model
+    return bool(running)
 
 
 def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:
@@ -141,8 +164,7 @@ def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> flo
     return np.inf if np.isnan(guess) else guess
 
 
-def _left_out(question: Question, model: Model, budget: Budget) -> Measured:
-    reason = f"left out: expected to take more than {budget.seconds:g} s"
+def _without(question: Question, model: Model, reason: str) -> Measured:
     return Measured(model.family, model.resolution, nothing(question, reason), float("nan"))
 
 
@@ -157,9 +179,9 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     write_atomic(out / "cheapest.csv", csv_text(CHEAPEST, best))
     write_atomic(out / "reading.md", "\n".join(f"- {line}" for line in chart.sentences()) + "\n")
     said = {"workers": workers, "design": chart.question.name, "law": chart.question.law_text}
-    about = provenance(PACKAGES)
+    about = {"measured_with": [one for one in chart.made_with if one], "written_with": provenance()}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
-    save_figure(chart_figure(chart, about), out / "chart.svg", out / "chart.png")
+    save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
 
 
 def _cells(row: Row) -> tuple[object, ...]:

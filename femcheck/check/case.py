@@ -31,6 +31,7 @@ __all__ = [
     "CaseResult",
     "Solid",
     "Workshop",
+    "forget_workshops",
     "rest_slopes",
     "solve_case",
     "stopped",
@@ -157,6 +158,11 @@ def workshop(solid: Solid) -> Workshop:
         kept = Workshop(solid.problem(body), Shapes(body), direct_solver(solid.solver))
         _WORKSHOPS[solid.digest] = kept
     return replace(kept, problem=kept.problem.with_law(solid.law))
+
+
+def forget_workshops() -> None:
+    """Have the next task of this process discretise anew, as if it were the first."""
+    _WORKSHOPS.clear()
 
 
 def solve_case(case: Case) -> CaseResult:

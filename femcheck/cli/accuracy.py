@@ -12,8 +12,9 @@ from rich.table import Table
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
+from femcheck.accuracy.ending import Ending, Within
 from femcheck.accuracy.run import beam_difference, run_accuracy
-from femcheck.accuracy.within import Ending, RungChoice, Within
+from femcheck.accuracy.within import RungChoice
 from femcheck.chart.chart import seconds_text
 from femcheck.cli.request import RunRequest
 from femcheck.cli.run import folders_of, refuse_twins, subject_of
@@ -51,6 +52,8 @@ def accuracy_command(request: RunRequest, options: LawChoice) -> None:
         value = getattr(request, name)
         if value != usual:
             raise InputError(f"--{name}", "", value, "chosen by --accuracy: leave it out")
+    if not request.budget > 0:
+        raise InputError("--budget", "", request.budget, "above 0 s")
     questions = _questions(request, options)
     folders = folders_of(request, [question.name for question in questions])
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())

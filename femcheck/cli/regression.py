@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
 
@@ -51,16 +52,30 @@ def regress_command(
     with _Shown() as shown:
         found = regress(designs, baseline, meshes, workers=workers, callback=shown.tell)
     if out is not None:
-        write_atomic(out, csv_text(HEADER, map(_cells, found.moved)))
+        write_atomic(out, csv_text(HEADER, map(_cells, found.moved + found.late)))
     seconds = perf_counter() - started
     about = f"{found.rungs} rungs of {len(found.designs)} designs, {found.rows} rows"
     if found.holds:
         console.print(f"{about}: nothing moved, {seconds:.0f} s", soft_wrap=True, markup=False)
         return
-    _report(found)
+    if found.moved:
+        _report(found)
     console.print(f"{about}: {len(found.moved)} moved, {seconds:.0f} s", markup=False)
-    console.print(f"lowest rung that moved: {found.lowest}", soft_wrap=True, markup=False)
+    if found.late:
+        _say_late(found.late)
+    if found.moved:
+        console.print(f"lowest rung that moved: {found.lowest}", soft_wrap=True, markup=False)
     raise typer.Exit(1)
+
+
+def _say_late(late: Sequence[Moved]) -> None:
+    """What ended by its time limit, a line each: it is no move, and nothing is known of it."""
+    said = f"{len(late)} not compared, time limit reached (another load on this machine?):"
+    console.print(said, soft_wrap=True, markup=False)
+    for one in late[:MOST_ROWS]:
+        held = one.held
+        place = f"  {held.rung} of {one.design}: {held.quantity} at {one.row}"
+        console.print(place, soft_wrap=True, markup=False)
 
 
 def _report(found: Regression) -> None:

@@ -12,6 +12,7 @@ from beamopt.files import write_atomic
 __all__ = ["report_command"]
 
 ENDINGS = (".html", ".htm")
+LARGE = 8.0  # MB: above that mail servers and phones make trouble
 HEAD = 1000  # bytes at the beginning of a file in which a report has its mark
 
 
@@ -39,3 +40,6 @@ def report_command(runs: Sequence[Path], out: Path, title: str, *, force: bool) 
     write_atomic(out, page)
     size = len(page.encode("utf-8")) / 1e6
     console.print(f"{out}  {size:.2f} MB", soft_wrap=True, markup=False, highlight=False)
+    if size > LARGE:
+        said = f"above {LARGE:g} MB: slow to open, may be too large to send; take fewer folders"
+        console.print(f"note: {said}", soft_wrap=True, markup=False, highlight=False)

@@ -48,6 +48,8 @@ def run_command(request: RunRequest) -> None:
         return
     if request.rung != "auto":
         raise InputError("--rung", "", request.rung, "goes with --accuracy")
+    if not request.budget == np.inf:
+        raise InputError("--budget", "", request.budget, "goes with --accuracy")
     subjects = _subjects(request)
     folders = folders_of(request, [subject.name for subject in subjects])
     for subject, folder in zip(subjects, folders, strict=True):  # before any work

@@ -61,7 +61,7 @@ FAULTS = (
     Fault(
         "a winding forgotten",
         "femcheck.check.case",
-        "winding = wind(body, *solid.wound) if solid.wound else None",
+        "winding = wind(body, *self.wound) if self.wound else None",
         "winding = None",
         "solid, wound",
     ),

@@ -46,4 +46,4 @@ def test_processes_count() -> None:
     work = "import time\nwhile time.process_time() < 0.3: pass"
     before = cpu_seconds()
     subprocess.run([sys.executable, "-c", work], check=True)
-    assert cpu_seconds() - before >= 0.3
+    assert cpu_seconds() - before > 0.25  # children's are in hundredths of a second

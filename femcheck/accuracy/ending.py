@@ -1,0 +1,85 @@
+"""How answering to an accuracy ended, and what was found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.rod.status import RodStatus
+from femcheck.continuation.outcome import Status
+from femcheck.models.question import Question
+from femcheck.models.reply import Model, Reply
+
+__all__ = ["Ending", "Tried", "Within", "is_physical"]
+
+
+class Ending(Enum):
+    """How it ended; the value is the text shown to people."""
+
+    REACHED = "accuracy reached"
+    NOT_REACHED = "accuracy not reached: the finest model's estimate is larger, or a tip was lost"
+    TOO_DEAR = "accuracy not reached: a finer solid is expected to take too long"
+    NO_TIP = "no combination has a tip"
+    NO_MODEL = "no model of this law can be made of the design"
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A model that was asked, and what it took of the processor [s]."""
+
+    model: Model
+    reply: Reply
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Within:
+    """Tips to an accuracy.
+
+    accuracy : asked for [mm]. ending : whether it was reached.
+    reply : of the finest model; empty of tips without one.
+    estimate : (n,) error of each tip [mm]; NaN where that is not known, or there is no tip.
+    tried : all models that were asked, the last one's reply is the answer.
+    reason : why this rung, in a sentence.
+    """
+
+    question: Question
+    accuracy: float
+    ending: Ending
+    reply: Reply | None
+    estimate: FloatArray
+    tried: tuple[Tried, ...]
+    reason: str
+
+    @property
+    def seconds(self) -> float:
+        """Processor time of all of it [s]."""
+        return sum(one.seconds for one in self.tried)
+
+    @property
+    def worst(self) -> float:
+        """Largest estimate [mm]; NaN without any."""
+        known = self.estimate[np.isfinite(self.estimate)]
+        return float(known.max()) if known.size else np.nan
+
+    @property
+    def chosen(self) -> str:
+        """The model whose tips these are."""
+        if self.reply is None:
+            return "none"
+        model = next(one.model for one in self.tried if one.reply is self.reply)
+        return f"{model.family} {model.resolution}".strip()
+
+
+def is_physical(reason: str) -> bool:
+    """Whether a tip is missing because the actuator has none, not because it was not computed."""
+    return any(reason.startswith(one.value) for one in NO_EQUILIBRIUM)
+
+
+NO_EQUILIBRIUM = (
+    *(Status.LIMIT_POINT, Status.BUCKLED),
+    *(RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED),
+)

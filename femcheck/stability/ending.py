@@ -1,0 +1,48 @@
+"""How a cell of the map ended: with an equilibrium, with the reason why not, or without a solid."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from femcheck.continuation.outcome import Status
+
+__all__ = ["Ending", "ending_of"]
+
+
+class Ending(Enum):
+    """How a cell ended; the value is the text shown to people."""
+
+    STABLE = "stable equilibrium"
+    UNCHECKED = "equilibrium, stability not checked"
+    UNSTABLE = "equilibrium that is unstable"
+    LIMIT_POINT = Status.LIMIT_POINT.value
+    BUCKLED = Status.BUCKLED.value
+    INVERTED = Status.INVERTED.value
+    STEP_TOO_SMALL = Status.STEP_TOO_SMALL.value
+    LINEAR_SOLVER = Status.LINEAR_SOLVER.value
+    TIME_OUT = Status.TIME_OUT.value
+    STOPPED = Status.STOPPED.value
+    NO_MESH = "no mesh"
+    NO_PAIR = "element without a stable pair for this law"
+
+    @property
+    def has_equilibrium(self) -> bool:
+        """Whether there is a stable equilibrium, as far as is known."""
+        return self in (Ending.STABLE, Ending.UNCHECKED)
+
+    @property
+    def says_none(self) -> bool:
+        """Whether the solver found out that the stable path ends below this pressure."""
+        return self in (Ending.LIMIT_POINT, Ending.BUCKLED)
+
+
+def ending_of(status: Status, unstable: int | None) -> Ending:
+    """The ending of a case.
+
+    unstable : directions in which an equilibrium that was found is unstable; None: not known.
+    """
+    if status is not Status.CONVERGED:
+        return Ending[status.name]
+    if unstable is None:
+        return Ending.UNCHECKED
+    return Ending.UNSTABLE if unstable > 0 else Ending.STABLE

@@ -1,0 +1,146 @@
+"""Making the map: every cell and path on any number of processes, then tables and figure."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Mapping
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+from beamopt.errors import InputError
+from beamopt.files import json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.plot.style import save_figure
+from beamopt.provenance import provenance, thread_settings
+from beamopt.study.pool import processes
+from femcheck.check.folder import PACKAGES
+from femcheck.check.work import solve_all
+from femcheck.stability.axis import Axis
+from femcheck.stability.ending import Ending
+from femcheck.stability.figure import map_figure
+from femcheck.stability.found import AxisFound, found_of
+from femcheck.stability.journal import Journal
+from femcheck.stability.reading import reading
+from femcheck.stability.tables import tables_of, timing_csv
+from femcheck.stability.work import Key, MapWork, Result
+
+__all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
+
+JOURNAL = "journal.jsonl"
+AGAIN = (Ending.STOPPED, Ending.TIME_OUT)  # a map that goes on tries these once more
+COMPUTED = "computed"
+NAMES = (
+    *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),
+    *("stability.svg", "stability.png"),
+)
+
+Progress = Callable[[Key, Result, int, int], None]
+Pool = Callable[[int], AbstractContextManager[Executor]]
+
+
+def run_map(
+    out: Path,
+    axes: Mapping[str, Axis],
+    *,
+    wanted: Collection[str] | None = None,
+    workers: int = 1,
+    resume: bool = False,
+    progress: Progress | None = None,
+    pool: Pool = processes,
+    figures: bool = True,
+) -> list[AxisFound]:
+    """Solve what is not solved yet, and write everything to `out`.
+
+    Parameters
+    ----------
+    axes : all panels by name.
+    wanted : names of those to be solved now, None for all; what `out` has of others is drawn too.
+    workers : tasks at once; no answer depends on it.
+    resume : go on with what is in `out`.
+    progress : called with each task, its result, how many are done and how many there are.
+    pool : makes an executor of that many workers.
+
+    Raises
+    ------
+    InputError : `out` holds something else, or the map of other specimens.
+    """
+    claim_folder(out, JOURNAL, resume=resume)
+    clear_leftovers(out, (JOURNAL, *NAMES))
+    journal = Journal(out / JOURNAL, axes)
+    known = {key: one for key, one in journal.results.items() if one.ending not in AGAIN}
+    chosen = {name: axis for name, axis in axes.items() if wanted is None or name in wanted}
+    work = MapWork(chosen, {key: one for key, one in known.items() if key[0] in chosen})
+    before, total = len(work.results), len(work.keys)
+
+    def keep(key: Key, result: Result) -> None:
+        journal.add(axes[key[0]], key, result)
+        if progress is not None:
+            progress(key, result, len(work.results), total)
+
+    solve_all(work, lambda: pool(workers), workers, keep)
+    threads = "1" if pool is processes else thread_settings()["MKL_NUM_THREADS"]
+    made = {"workers": workers, "threads_of_a_worker": threads, **provenance(PACKAGES)}
+    if len(work.results) == before:  # nothing was solved now
+        made = _computed_before(out) or made
+    return _write(out, axes, journal.results, made, figures)
+
+
+def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> list[AxisFound]:
+    """Write tables and figure again from the journal in `out`, and solve nothing.
+
+    Raises
+    ------
+    InputError : there is no map in `out`, or it is that of other specimens.
+    """
+    path = out / JOURNAL
+    if not path.exists():
+        raise InputError(path, "", None, "no such file: there is no map to draw again")
+    journal = Journal(path, axes)
+    if not journal.results:
+        raise InputError(path, "", None, f"holds nothing of {', '.join(axes)}")
+    computed = _computed_before(out) or provenance(PACKAGES)
+    return _write(out, axes, journal.results, computed, figures)
+
+
+def _computed_before(out: Path) -> dict[str, Any]:
+    """What the map was computed with, as it was said then; empty if it was not."""
+    try:
+        said = json.loads((out / "provenance.json").read_text(encoding="utf-8"))[COMPUTED]
+        return dict(said)
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+
+
+def _write(
+    out: Path,
+    axes: Mapping[str, Axis],
+    results: Mapping[Key, Result],
+    computed: dict[str, Any],
+    figures: bool,
+) -> list[AxisFound]:
+    """Everything but the journal; each file whole or not at all."""
+    found = found_of(axes, results)
+    for name, text in tables_of(found).items():
+        write_atomic(out / name, text)
+    write_atomic(out / "reading.md", reading(found))
+    write_atomic(out / "timing.csv", timing_csv(axes, results))
+    if figures:
+        count = sum(1 for one in found for row in one.rows for _ in row.solved)
+        title = f"Pressure in one supply: {count} cases, solved each by itself from rest"
+        figure = map_figure(found, title, caption_of(computed))
+        save_figure(figure, out / "stability.svg", out / "stability.png")
+    made = {COMPUTED: computed, "written": provenance(PACKAGES)}
+    write_atomic(out / "provenance.json", json_text(made))
+    return found
+
+
+def caption_of(computed: Mapping[str, Any]) -> str:
+    """Threads, processor and versions, on one line."""
+    versions, machine = computed.get("versions", {}), computed.get("machine", {})
+    names = ("python", "beamopt", "numpy", "scipy", "scikit-fem", "gmsh", "pypardiso")
+    said = ", ".join(f"{name} {versions[name]}" for name in names if name in versions)
+    workers, threads = (computed.get(key, "?") for key in ("workers", "threads_of_a_worker"))
+    processor = machine.get("processor", "?")
+    return f"{workers} at once, threads of each: {threads}; {processor}; {said}"

@@ -1,0 +1,79 @@
+"""Journals of lines: what a kill leaves, and what is somebody else's."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beamopt.errors import InputError
+from beamopt.line_journal import LineJournal
+
+ASKED = {"schema": "test/1", "n": (1, 2), "text": "höhe\u2028\x85"}
+ENTRIES: list[dict[str, Any]] = [{"a": 1.5}, {"b": "zwei\u2028\x0b\nrows"}, {"c": [None, 0.1]}]
+
+
+def journal(path: Path) -> LineJournal:
+    return LineJournal(path, ASKED, "test")
+
+
+def filled(path: Path) -> bytes:
+    one = journal(path)
+    for entry in ENTRIES:
+        one.add(entry)
+    return path.read_bytes()
+
+
+def test_entries_come_back(tmp_path: Path) -> None:
+    """Whatever they hold: line ends within texts end no line."""
+    before = filled(tmp_path / "j")
+    again = journal(tmp_path / "j")
+    assert again.entries == ENTRIES
+    assert (tmp_path / "j").read_bytes() == before
+    assert before.count(b"\n") == 1 + len(ENTRIES)
+
+
+@given(st.data())
+def test_a_kill_at_any_byte_loses_a_line_at_most(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    """What was whole stays; going on ends in the same file."""
+    path = tmp_path_factory.mktemp("journal") / "j"
+    whole = filled(path)
+    cut = data.draw(st.integers(0, len(whole)))
+    path.write_bytes(whole[:cut])
+    again = journal(path)
+    kept = max(whole[:cut].count(b"\n") - 1, 0)
+    assert again.entries == ENTRIES[:kept]
+    for entry in ENTRIES[kept:]:
+        again.add(entry)
+    assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("line", [b"{\n", b"\n", b"[1]\n", b"3\n", b"\xff\xfe\n", b'{"a": 1} x\n'])
+def test_damage_is_said_and_left_alone(tmp_path: Path, line: bytes) -> None:
+    path = tmp_path / "j"
+    whole = filled(path)
+    for damaged in (whole + line, whole + line + b'{"d": 1}\n'):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match="no journal of a test"):
+            journal(path)
+        assert path.read_bytes() == damaged
+
+
+@pytest.mark.parametrize("head", [{}, [], ASKED | {"n": [1, 3]}, ASKED | {"more": 1}])
+def test_another_question_is_refused(tmp_path: Path, head: object) -> None:
+    path = tmp_path / "j"
+    path.write_text(json.dumps(head) + "\n")
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="the test there is of another question"):
+        journal(path)
+    assert path.read_bytes() == before
+
+
+def test_an_empty_file_is_a_new_journal(tmp_path: Path) -> None:
+    (tmp_path / "j").write_bytes(b"")
+    assert journal(tmp_path / "j").entries == []
+    assert (tmp_path / "j").read_bytes().endswith(b"}\n")
