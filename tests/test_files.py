@@ -60,3 +60,12 @@ def test_json_keeps_lists_of_numbers_on_one_line() -> None:
     assert json.loads(text) == value
     with pytest.raises(ValueError, match="JSON"):
         json_text({"x": float("nan")})
+
+
+@given(st.text(st.characters(codec=None)))
+def test_any_text_survives_json(text: str) -> None:
+    """Escaped or not: control characters, emojis, halves of a surrogate pair, and escapes."""
+    for escaped in (True, False):
+        written = json_text({text: [text]}, escaped=escaped).encode()
+        assert json.loads(written) == {text: [text]}
+    assert "mm³" in json_text({"unit": "mm³"}, escaped=False)

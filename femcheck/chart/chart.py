@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,11 +25,13 @@ class Row:
 
     error : largest distance of a tip from the reference [mm]; NaN without any, or any reference.
     missing : tips that the reference has and the model has not.
+    is_aside : whether it is finer in another respect than its family's other models.
     """
 
     measured: Measured
     error: float
     missing: int
+    is_aside: bool = False
 
     @property
     def is_whole(self) -> bool:
@@ -47,10 +49,18 @@ class Chart:
 
     @classmethod
     def of(
-        cls, question: Question, measured: Sequence[Measured], reference: Reference | None
+        cls,
+        question: Question,
+        measured: Sequence[Measured],
+        reference: Reference | None,
+        aside: Collection[str] = (),
     ) -> Chart:
-        """Errors of what was measured."""
-        return cls(question, tuple(_row(one, reference) for one in measured), reference)
+        """Errors of what was measured; `aside` : names of models that stand aside."""
+        rows = [
+            replace(_row(one, reference), is_aside=f"{one.family} {one.resolution}" in aside)
+            for one in measured
+        ]
+        return cls(question, tuple(rows), reference)
 
     @property
     def uncertainty(self) -> float:

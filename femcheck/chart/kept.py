@@ -66,7 +66,8 @@ def chart_of(question: Question, measured: Mapping[str, Measured]) -> Chart:
     known = [
         measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
     ]
-    return Chart.of(question, known, reference_of(question, series, measured))
+    aside = {key_of(model) for one in series for model in (one.sized, one.stiffer) if model}
+    return Chart.of(question, known, reference_of(question, series, measured), aside)
 
 
 def read_chart(folder: Path) -> Chart:

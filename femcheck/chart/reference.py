@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def reference_of(
 
     Under the beam's own law that is the closed form, or the rod to its tightest tolerance.
     """
-    limits = limits_of(series, measured)
+    limits = limits_of(series, measured, SOLVED * question.design.actuator.length)
     if question.is_of_the_beam:
         limits = [_closed_form(question), *limits]
     known = [limit for limit in limits if np.isfinite(limit.uncertainty)]
@@ -102,13 +102,21 @@ def _closed_form(question: Question) -> Limit:
     return Limit("closed form" if not loaded else "beam", tips, band)
 
 
-def limits_of(series: Sequence[Series], measured: Mapping[str, Measured]) -> list[Limit]:
-    """Of every family of elements that converges and has two resolutions."""
+SOLVED = 1e-6  # of the length: what Newton's last steps leave of a solid's tips, extrapolated
+
+
+def limits_of(
+    series: Sequence[Series], measured: Mapping[str, Measured], solved: float = 0.0
+) -> list[Limit]:
+    """Of every family of elements that converges and has two resolutions.
+
+    solved : what is left of the solution itself [mm], which every band has.
+    """
     found = []
     for one in series:
         limit = _limit(one, measured)
         if limit is not None:
-            found.append(limit)
+            found.append(replace(limit, band=limit.band + solved))
     return found
 
 

@@ -136,8 +136,8 @@ class RodByMethod:
         return None
 
     def reply(self, question: Question, workers: int = 0) -> Reply:
-        """Tips by this method, whether loads make it necessary or not."""
-        design = question.design
+        """Tips by this method, whether loads make it necessary or not; see `RodOnOutline`."""
+        design = _rebuilt(question.design)
         parents = parents_on_grid() if question.is_on_grid else None
         method = next(one for one in all_methods(parents) if one.name == self.method)
         model: RodModel = design.climb.model.on(Rung.LOADED)

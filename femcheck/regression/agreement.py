@@ -61,10 +61,10 @@ def _apart(one: Held, other: Held) -> Iterator[str]:
 
 
 def _prisms(held: Sequence[Held], length: float) -> Iterator[str]:
-    """Volumes of the solid at rest are areas times length."""
+    """Volumes of the solid at rest are areas times length, where both are wanted."""
     volumes = {row: value for one in _of(held, "solid at rest") for row, value in one.rows.items()}
     for one in _of(held, "kept mesh"):
-        if one.quantity not in ("areas", "triangles' area"):
+        if one.quantity not in ("areas", "triangles' area") or not volumes:
             continue
         allowed = 2 * length * one.tolerance
         for row, area in one.rows.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -17,7 +16,14 @@ from femcheck.regression.held import LADDER, Held
 from femcheck.regression.held_design import HeldDesign, design_digest
 from femcheck.regression.kept_mesh import mesh_digest
 
-__all__ = ["Baseline", "baseline_file", "check_unchanged", "read_baseline", "write_baseline"]
+__all__ = [
+    "Baseline",
+    "baseline_file",
+    "check_unchanged",
+    "read_baseline",
+    "still_held",
+    "write_baseline",
+]
 
 SCHEMA = "femcheck-baseline/1"
 
@@ -91,17 +97,16 @@ def write_baseline(folder: Path, design: HeldDesign, held: tuple[Held, ...]) -> 
         "mesh": mesh_digest(design.mesh) if _meshed(held) else None,
         "name": design.name,
     }
-    write_atomic(file, _readable(json_text({"schema": SCHEMA} | content)))
+    write_atomic(file, json_text({"schema": SCHEMA} | content, escaped=False))  # "mm³" as it is
     return file
 
 
-def _readable(text: str) -> str:
-    """JSON with "mm³" in place of its escapes."""
-    return re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), text)
-
-
 def _meshed(held: tuple[Held, ...]) -> bool:
-    return any(LADDER.index(one.rung) >= LADDER.index("kept mesh") for one in held)
+    return any(_needs_mesh(one.rung) for one in held)
+
+
+def _needs_mesh(rung: str) -> bool:
+    return LADDER.index(rung) >= LADDER.index("kept mesh")
 
 
 def _entry(held: Held) -> dict[str, object]:
@@ -124,6 +129,24 @@ def read_baseline(file: Path) -> Baseline:
     if schema != SCHEMA:
         raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
     return parse(Baseline, data, file)
+
+
+def still_held(file: Path, design: HeldDesign) -> tuple[Held, ...]:
+    """What a baseline holds of the design as it is, on rungs that are not the design's `rungs`.
+
+    Nothing where there is no baseline that can be read, or one of another section; of rungs on a
+    mesh nothing where that is another one.
+    """
+    try:
+        found = read_baseline(file)
+    except InputError:
+        return ()
+    if found.design.digest != design_digest(design.design):
+        return ()
+    same = found.mesh is not None and design.mesh.exists()
+    same = same and found.mesh == mesh_digest(design.mesh)
+    rest = [one.held for one in found.held if one.rung not in design.rungs]
+    return tuple(one for one in rest if same or not _needs_mesh(one.rung))
 
 
 def check_unchanged(file: Path, baseline: Baseline, design: HeldDesign) -> None:

@@ -17,6 +17,7 @@ from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.scene import load_scene
 from femcheck.check.subject import sealed_copy
+from femcheck.models.named import name_of
 from femcheck.regression.held import LADDER
 
 __all__ = ["BUNDLED", "HeldDesign", "design_digest", "find_design"]
@@ -95,7 +96,7 @@ _LEFT_OUT = {
 
 
 def find_design(given: str, meshes: Path) -> HeldDesign:
-    """A design that comes with the package, by name, or one of a file.
+    """A design that comes with the package, by name, or one of a file or a run folder.
 
     meshes : folder of the kept section meshes.
 
@@ -107,13 +108,14 @@ def find_design(given: str, meshes: Path) -> HeldDesign:
         mesh = meshes / f"{given}.msh"
         rungs = frozenset(LADDER) - _LEFT_OUT.get(given, frozenset())
         return HeldDesign(given, BUNDLED[given](), None, mesh, rungs)
-    file = Path(given)
-    if not file.exists():
-        allowed = f"no such design; a file, or one of: {', '.join(BUNDLED)}"
+    path = Path(given)
+    if not path.exists():
+        allowed = f"no such design; a file, a run folder, or one of: {', '.join(BUNDLED)}"
         raise InputError(given, "", None, allowed)
-    if file.is_dir():
-        file = file / "best.json"
-    return HeldDesign(file.stem, load_design(file), file, meshes / f"{file.stem}.msh")
+    file = path / "best.json" if path.is_dir() else path
+    design = load_design(file)
+    name = name_of(path, design)
+    return HeldDesign(name, design, file, meshes / f"{name}.msh")
 
 
 def design_digest(design: Design) -> str:

@@ -17,7 +17,7 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, read_section
 from femcheck.mesh.section_mesh import SectionMesh
 
-__all__ = ["KeptMesher", "make_section", "mesh_digest", "read_kept", "write_section"]
+__all__ = ["KeptMesher", "is_of", "make_section", "mesh_digest", "read_kept", "write_section"]
 
 SAGITTA = 0.4  # mm: chords ten times farther from the smooth outline than a design's own
 SIZES = SectionSizes(factor=4.0, growth=5.0)
@@ -64,8 +64,21 @@ def read_kept(file: Path) -> SectionMesh:
     return section
 
 
-def write_section(file: Path, section: SectionMesh) -> None:
-    """Write a mesh as gmsh 2.2 text; a kill never leaves half of it."""
+def is_of(file: Path, digest: str) -> bool:
+    """Whether a file holds the mesh of the design of a digest; false where there is no file."""
+    return file.exists() and _comment(digest).encode() in file.read_bytes()
+
+
+def _comment(digest: str) -> str:
+    """A section of gmsh's format that readers pass over."""
+    return f"$Comments\ndesign {digest}\n$EndComments\n"
+
+
+def write_section(file: Path, section: SectionMesh, digest: str) -> None:
+    """Write a mesh as gmsh 2.2 text; a kill never leaves half of it.
+
+    digest : of the design that it is of, for `is_of`.
+    """
     import meshio
 
     cells = [("triangle", section.triangles), ("line", section.edges)]
@@ -76,6 +89,8 @@ def write_section(file: Path, section: SectionMesh) -> None:
     temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
     try:
         meshio.gmsh.write(temporary, mesh, fmt_version="2.2", binary=False)
+        with temporary.open("a", encoding="utf-8", newline="\n") as stream:
+            stream.write(_comment(digest))
         temporary.replace(file)
     finally:
         temporary.unlink(missing_ok=True)

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from femcheck.continuation.outcome import Status
 from femcheck.regression.held import LADDER, Held, Row
 from femcheck.regression.measure import Measured
 
-__all__ = ["Moved", "compare", "lowest", "said"]
+__all__ = ["Moved", "compare", "is_late", "lowest", "said"]
 
 NO_ANSWER = "no answer"
 
@@ -53,6 +54,11 @@ def compare(design: str, held: Iterable[Held], measured: Measured) -> list[Moved
     for other in now.values():  # appeared: nothing is held of it
         found += [Moved(design, other, row, None, is_, math.inf) for row, is_ in other.rows.items()]
     return sorted(found, key=_place)
+
+
+def is_late(moved: Moved) -> bool:
+    """Whether the case of a row ended by its time limit today: no result, so no move."""
+    return moved.now == Status.TIME_OUT.value
 
 
 def lowest(moved: Iterable[Moved]) -> Moved | None:

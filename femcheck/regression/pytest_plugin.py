@@ -8,7 +8,7 @@ Loaded with every pytest run: what it needs is imported when a design is held.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 import pytest
@@ -37,7 +37,7 @@ def hold_design(request: pytest.FixtureRequest) -> HoldDesign:
     file : of the design, relative to the test's folder; baseline (and section mesh, where there is
         a solid) stand in `baselines/` there.
     rungs : those that are looked at, by their names in `femcheck.regression.held.LADDER`; all that
-        the design has if None.
+        are held if None. Several tests may hold rungs of one design: updates are put together.
     """
     folder = request.path.parent
     update = bool(request.config.getoption(UPDATE))
@@ -53,8 +53,6 @@ def hold_design(request: pytest.FixtureRequest) -> HoldDesign:
 
 def _hold(file: Path, folder: Path, rungs: Collection[str] | None, update: bool) -> str:
     """Compare, or write; what is wrong, "" where nothing is."""
-    from dataclasses import replace
-
     from beamopt.errors import InputError
     from femcheck.regression.baseline import baseline_file
     from femcheck.regression.held_design import find_design
@@ -64,8 +62,7 @@ def _hold(file: Path, folder: Path, rungs: Collection[str] | None, update: bool)
     try:
         design = find_design(str(file), folder)
         if update:
-            chosen = design.rungs if rungs is None else frozenset(rungs)
-            update_baseline(replace(design, rungs=chosen), folder)
+            update_baseline(design, folder, rungs)
             return ""
         kept = baseline_file(folder, design.name)
         if not kept.exists():
@@ -77,11 +74,17 @@ def _hold(file: Path, folder: Path, rungs: Collection[str] | None, update: bool)
         return f"nothing is written: {error}"
     if found.holds:
         return ""
-    lines = [str(one) for one in found.moved[:MOST]]
-    more = len(found.moved) - len(lines)
-    rest = [f"… and {more} more"] if more else []
-    head = f"{len(found.moved)} of {found.rows} rows moved, the lowest rung first:"
-    return "\n  ".join([head, *lines, *rest])
+    moved = _listed(found.moved, f"of {found.rows} rows moved, the lowest rung first:")
+    late = _listed(found.late, f"of {found.rows} rows not compared, time limit reached:")
+    return "\n".join(filter(None, (moved, late)))
+
+
+def _listed(rows: Sequence[object], head: str) -> str:
+    """The first rows under their number; "" where there are none."""
+    if not rows:
+        return ""
+    rest = [f"… and {len(rows) - MOST} more"] if len(rows) > MOST else []
+    return "\n  ".join([f"{len(rows)} {head}", *map(str, rows[:MOST]), *rest])
 
 
 def _check_rungs(rungs: Collection[str] | None) -> None:

@@ -15,13 +15,14 @@ from femcheck.regression.baseline import (
     baseline_file,
     check_unchanged,
     read_baseline,
+    still_held,
     write_baseline,
 )
 from femcheck.regression.held import LADDER, Held
-from femcheck.regression.held_design import BUNDLED, HeldDesign, find_design
-from femcheck.regression.kept_mesh import make_section, write_section
+from femcheck.regression.held_design import BUNDLED, HeldDesign, design_digest, find_design
+from femcheck.regression.kept_mesh import is_of, make_section, write_section
 from femcheck.regression.measure import Measured, measure_all, parts_of
-from femcheck.regression.moved import Moved, compare, lowest
+from femcheck.regression.moved import Moved, compare, is_late, lowest
 
 __all__ = ["ContradictionError", "Regression", "hold_designs", "regress", "update_baseline"]
 
@@ -40,18 +41,20 @@ class Regression:
     """What became of baselines.
 
     moved : rows that moved, from the lowest rung on, whatever the design.
+    late : rows whose case ended by its time limit: whether they moved is not known.
     rungs, rows : how many were compared; designs : their names.
     """
 
     moved: tuple[Moved, ...]
+    late: tuple[Moved, ...]
     designs: tuple[str, ...]
     rungs: int
     rows: int
 
     @property
     def holds(self) -> bool:
-        """Whether nothing moved."""
-        return not self.moved
+        """Whether nothing moved, and all is known."""
+        return not self.moved and not self.late
 
     @property
     def lowest(self) -> Moved | None:
@@ -94,21 +97,29 @@ def hold_designs(
     return [write_baseline(folder, one, measured[one.name].held) for one in designs]
 
 
-def update_baseline(design: HeldDesign, folder: Path) -> Path:
-    """Write what the rungs of one design say today, over what was there.
+def update_baseline(design: HeldDesign, folder: Path, rungs: Collection[str] | None = None) -> Path:
+    """Write what rungs of one design say today; what is held of other ones stays.
+
+    rungs : those that are wanted; the design's own `rungs`, as far as it has them, if None.
 
     Raises
     ------
-    InputError : no mesh of its section.
+    InputError : no mesh of its section; a rung that is wanted and that the design does not have.
     ContradictionError : independent rungs contradict each other; nothing is written.
     """
+    if rungs is not None:
+        design = replace(design, rungs=frozenset(rungs))
     folder.mkdir(parents=True, exist_ok=True)
     _have_mesh(design)
     measured = measure_all([design], estimate=True)[design.name]
     wrong = _wrong(design, measured)
     if wrong:
         raise ContradictionError(f"{design.name}: {'; '.join(wrong)}")
-    return write_baseline(folder, design, measured.held)
+    if rungs is not None:
+        _require(rungs, {one.rung for one in measured.held}, design.name, "of this design there is")
+    rest = still_held(baseline_file(folder, design.name), design)
+    held = sorted((*rest, *measured.held), key=lambda one: LADDER.index(one.rung))
+    return write_baseline(folder, design, tuple(held))
 
 
 def regress(
@@ -127,13 +138,17 @@ def regress(
 
     Raises
     ------
-    InputError : a baseline is missing or damaged, or its design changed since.
+    InputError : a baseline is missing or damaged, does not hold one of `rungs`, or its design
+        changed since.
     """
     found = [_read(folder, name, meshes) for name in names or _all_in(folder)]
-    chosen = [
-        (replace(design, rungs=base.rungs if rungs is None else base.rungs & set(rungs)), base)
-        for design, base in found
-    ]
+    if not names:
+        _require_bundled(folder, found)
+    chosen = []
+    for design, base in found:
+        wanted = base.rungs if rungs is None else frozenset(rungs)
+        _require(wanted, base.rungs, baseline_file(folder, design.name), "what is held:")
+        chosen.append((replace(design, rungs=wanted), base))
     designs = [design for design, _ in chosen]
     _check_names(designs)
     measured = measure_all(
@@ -146,22 +161,44 @@ def regress(
         compared += held
         moved += compare(design.name, held, measured[design.name])
     moved.sort(key=lambda one: LADDER.index(one.held.rung))
+    late = tuple(one for one in moved if is_late(one))
+    rest = tuple(one for one in moved if not is_late(one))
     rows = sum(len(one.rows) for one in compared)
     count = sum(len(design.rungs) for design in designs)
-    return Regression(tuple(moved), tuple(one.name for one in designs), count, rows)
+    return Regression(rest, late, tuple(one.name for one in designs), count, rows)
 
 
 def _read(folder: Path, given: str, meshes: Path) -> tuple[HeldDesign, Baseline]:
-    """A baseline and the design that it is of, by the design's name or file."""
-    plain = Path(given).name == given and not Path(given).suffix
-    name = given if given in BUNDLED else Path(given).stem
-    file = baseline_file(folder, name)
-    baseline = read_baseline(file)
-    origin = baseline.design.file
-    from_there = plain and given not in BUNDLED and origin is not None
-    design = find_design(str(folder / str(origin)) if from_there else given, meshes)
+    """A baseline and the design that it is of, by the baseline's name or the design's file."""
+    file = baseline_file(folder, given)
+    if Path(given).name == given and file.exists():
+        baseline = read_baseline(file)
+        origin = baseline.design.file  # goes before the package's designs: names may be the same
+        design = find_design(given if origin is None else str(folder / origin), meshes)
+        design = replace(design, name=given, mesh=meshes / f"{given}.msh")
+    else:
+        design = find_design(given, meshes)
+        file = baseline_file(folder, design.name)
+        baseline = read_baseline(file)
     check_unchanged(file, baseline, design)
     return design, baseline
+
+
+def _require(wanted: Collection[str], there: Collection[str], where: object, said: str) -> None:
+    """Refuse rungs that are not there: nothing would be held of them."""
+    missing = [rung for rung in wanted if rung not in there]
+    if missing:
+        known = ", ".join(rung for rung in LADDER if rung in there) or "nothing"
+        raise InputError(where, "rungs", ", ".join(missing), f"{said} {known}")
+
+
+def _require_bundled(folder: Path, found: Sequence[tuple[HeldDesign, Baseline]]) -> None:
+    """Where some of the package's designs are held, all are: a lost baseline holds nothing."""
+    held = {design.name for design, base in found if base.design.file is None}
+    lost = [name for name in BUNDLED if held and name not in held]
+    if lost:
+        said = f"no baseline of {', '.join(lost)}: `femcheck baseline` writes it, or name DESIGNs"
+        raise InputError(folder, "", None, said)
 
 
 def _all_in(folder: Path) -> list[str]:
@@ -179,10 +216,12 @@ def _check_names(designs: Sequence[HeldDesign]) -> None:
 
 
 def _have_mesh(design: HeldDesign) -> None:
-    """Make the small mesh of a design that has a solid; one that is there is kept."""
-    if "meshes" in parts_of(design) and not design.mesh.exists():
+    """Make the small mesh of a design that has a solid; one of the design as it is is kept."""
+    digest = design_digest(design.design)
+    is_meshed = any(part not in ("sections", "rods") for part in parts_of(design))
+    if is_meshed and not is_of(design.mesh, digest):
         design.mesh.parent.mkdir(parents=True, exist_ok=True)
-        write_section(design.mesh, make_section(design.design))
+        write_section(design.mesh, make_section(design.design), digest)
 
 
 def _wrong(design: HeldDesign, measured: Measured) -> list[str]:

@@ -12,8 +12,10 @@ from beamopt.outline.outline import Outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.moments import Moments
+from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID
 from femcheck.check.case import Case, CaseResult, Solid, solve_case, workshop
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.outcome import Status
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import stations
 from femcheck.mesh.geo import SectionSizes
@@ -27,7 +29,7 @@ from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.kept_mesh import KeptMesher, read_kept
 from femcheck.regression.rods import SAFETY
 from femcheck.regression.sections import held_moments
-from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
+from femcheck.solid.elements import DEFAULT_ELEMENT
 from femcheck.solid.winding import Wound
 
 __all__ = ["LAWS", "held_limit", "held_meshes", "held_solid"]
@@ -117,7 +119,8 @@ def held_solid(held: HeldDesign, law: HeldLaw, *, estimate: bool) -> Iterator[He
     question = _question(held, law.options, np.array(law.shares))
     fine = SolidModel(layers=LAYERS).reply(question)
     coarse = SolidModel(layers=FEWER).reply(question) if estimate else None
-    tolerance, source = _tolerance(fine.tips, None if coarse is None else coarse.tips)
+    order = ORDERS[RIGID if question.is_of_the_beam else MATERIAL]
+    tolerance, source = _tolerance(fine.tips, None if coarse is None else coarse.tips, order)
     least = NEWTON * held.design.actuator.length
     limit = max(tolerance, least), f"{source}; at least what Newton leaves, {least:.1g} mm"
     rows = of_reply(question.pressures, fine)
@@ -134,12 +137,15 @@ def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
         replies.append(SolidModel(layers=FEWER).reply(question))
     loads = [_limits(reply) for reply in replies]
     digits = 5e-4 * float(np.nanmax(loads[0], initial=0.0))  # reasons have four digits
-    tolerance, source = _tolerance(loads[0], loads[1] if estimate else None)
+    tolerance, source = _tolerance(loads[0], loads[1] if estimate else None, ORDERS[MATERIAL])
     said = f"{source}; at least the four digits of a reason"
     rung, layers, law = "solid, limit", f"{LAYERS} layers", question.law_text
     rows = of_reply(question.pressures, replies[0])
     yield Held(rung, layers, "endings", "", rows, 0.0, "in words", law)
-    rows = columns(rows, loads[0])
+    late: dict[str, Row] = {
+        row: said for row, said in rows.items() if said == Status.TIME_OUT.value
+    }
+    rows = columns(rows, loads[0]) | late
     yield Held(rung, layers, "limit pressures", "kPa", rows, max(tolerance, digits), said, law)
 
 
@@ -159,8 +165,10 @@ def _energy(held: HeldDesign, rung: str, pressures: FloatArray, estimate: bool) 
         ("chamber volumes", "mm³", _volumes_of),
     ):
         value = part(fine)
-        limit = _tolerance(value, None if coarse is None else part(coarse))
+        limit = _tolerance(value, None if coarse is None else part(coarse), ORDERS[RIGID])
         rows = columns([at(pressures)], value)
+        if fine.status is Status.TIME_OUT:
+            rows = dict.fromkeys(rows, Status.TIME_OUT.value)
         yield Held(rung, layers, quantity, unit, rows, *limit, law)
 
 
@@ -188,11 +196,13 @@ def _question(held: HeldDesign, law: LawChoice, shares: FloatArray) -> Question:
     return Question.of(held.name, held.design, chosen, shares * held.design.pressures[2])
 
 
-def _tolerance(fine: FloatArray, coarse: FloatArray | None) -> tuple[float, str]:
-    """From what is left of the change from fewer layers (Richardson); NaN where not asked for."""
+def _tolerance(fine: FloatArray, coarse: FloatArray | None, order: float) -> tuple[float, str]:
+    """From what is left of the change from fewer layers (Richardson); NaN where not asked for.
+
+    order : in which errors fall with the layers.
+    """
     if coarse is None:
         return np.nan, ""
-    order = ELEMENTS[DEFAULT_ELEMENT].tip_order or 1.0
     left = 1 / ((LAYERS / FEWER) ** order - 1)
     change = np.linalg.norm(fine - coarse, axis=1)
     worst = float(np.nanmax(change, initial=0.0))

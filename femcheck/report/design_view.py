@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from femcheck.report.accuracy_run import AccuracyRun, AccuracyView, accuracy_view
 from femcheck.report.embedding import Picture, drawn
 from femcheck.report.figures import section_figure
 from femcheck.report.other_runs import SearchRun
@@ -31,7 +32,8 @@ class Line:
 class DesignView:
     """A design and all that was found out about it.
 
-    section : None where no solid was made of it. facts : names and values, from its file.
+    section : None where there is no check and no prediction of it. facts : names and values, from
+        its file.
     """
 
     name: str
@@ -40,44 +42,61 @@ class DesignView:
     facts: tuple[tuple[str, str], ...]
     searches: tuple[SearchView, ...]
     runs: tuple[RunView, ...]
+    answers: tuple[AccuracyView, ...]
     lines: tuple[Line, ...]
 
 
-def design_views(runs: Sequence[SolidRun], searches: Sequence[SearchRun]) -> list[DesignView]:
+def design_views(
+    runs: Sequence[SolidRun], answers: Sequence[AccuracyRun], searches: Sequence[SearchRun]
+) -> list[DesignView]:
     """Put together what belongs to the same design: whose design files are the same.
 
     Raises
     ------
     InputError : a deformed mesh that is damaged.
     """
-    texts = dict.fromkeys(run.design_text for run in runs)
+    texts = dict.fromkeys(
+        [*(run.design_text for run in runs), *(one.design_text for one in answers)]
+    )
     views = []
     count = 0
     for text in texts:
         count += 1
         mine = [run for run in runs if run.design_text == text]
+        asked = [one for one in answers if one.design_text == text]
         found = [one for one in searches if one.design_text == text]
-        views.append(_view(mine, found, f"design-{count}"))
+        views.append(_view(mine, asked, found, f"design-{count}"))
     for alone in searches:
         if alone.design_text not in texts:
             count += 1
             anchor = f"design-{count}"
-            views.append(DesignView(alone.name, anchor, None, (), (search_view(alone),), (), ()))
+            views.append(
+                DesignView(alone.name, anchor, None, (), (search_view(alone),), (), (), ())
+            )
     return views
 
 
-def _view(runs: Sequence[SolidRun], searches: Sequence[SearchRun], anchor: str) -> DesignView:
-    subject = runs[0].subject
+def _view(
+    runs: Sequence[SolidRun],
+    answers: Sequence[AccuracyRun],
+    searches: Sequence[SearchRun],
+    anchor: str,
+) -> DesignView:
     caption = "The section that was meshed; material grey, chambers numbered by their supply."
-    anchors = [f"{anchor}-run-{place}" for place in range(1, len(runs) + 1)]
+    named = [(run, f"{anchor}-run-{place}") for place, run in enumerate(runs, 1)]
+    asked = [(run, f"{anchor}-accuracy-{place}") for place, run in enumerate(answers, 1)]
     return DesignView(
-        subject.name,
+        runs[0].subject.name if runs else answers[0].name,
         anchor,
-        drawn("section", section_figure(subject), caption),
-        tuple(_facts(runs[0])),
+        drawn("section", section_figure(runs[0].subject), caption) if runs else None,
+        tuple(_facts(runs[0])) if runs else (),
         tuple(search_view(one) for one in searches),
-        tuple(view_of(run, name) for run, name in zip(runs, anchors, strict=True)),
-        tuple(_line(run, name) for run, name in zip(runs, anchors, strict=True)),
+        tuple(view_of(run, name) for run, name in named),
+        tuple(accuracy_view(run, name) for run, name in asked),
+        (
+            *(_line(run, name) for run, name in named),
+            *(_accuracy_line(run, name) for run, name in asked),
+        ),
     )
 
 
@@ -117,3 +136,10 @@ def _line(run: SolidRun, anchor: str) -> Line:
             duration(run.seconds),
         ),
     )
+
+
+def _accuracy_line(run: AccuracyRun, anchor: str) -> Line:
+    summary = run.summary
+    law, asked = summary.text("law"), f"{number(summary.number('accuracy_mm'))} mm"
+    cells = (law, asked, "–", "–", "–", duration(run.seconds))
+    return Line(run.name, anchor, "to an accuracy", run.badge, cells)

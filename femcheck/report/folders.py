@@ -16,6 +16,7 @@ class Kind(Enum):
     """What a folder holds; the value is the text shown to people."""
 
     SOLID = "check or prediction"
+    ACCURACY = "answer to an accuracy"
     SEARCH = "search"
     FIGURES = "figures"
 
@@ -28,8 +29,8 @@ class Folder(NamedTuple):
 
 
 ALLOWED = (
-    "a folder of femcheck run (check.json), of beamopt optimize (scene.toml), of a chart or map "
-    "(provenance.json and .svg), or one that holds such folders"
+    "a folder of femcheck run (check.json; tried.csv), of beamopt optimize (scene.toml), of a "
+    "chart or map (provenance.json and .svg), or one that holds such folders"
 )
 
 
@@ -66,6 +67,8 @@ def _kind(path: Path) -> Kind | None:
         return None
     if (path / "check.json").exists():
         return Kind.SOLID
+    if (path / "tried.csv").exists() and (path / "summary.json").exists():
+        return Kind.ACCURACY
     if (path / "scene.toml").exists() and (path / "summary.json").exists():
         return Kind.SEARCH
     if (path / "provenance.json").exists() and any(path.glob("*.svg")):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from femcheck.material.rigid_section import RigidSection
+from femcheck.report.accuracy_run import AccuracyRun
 from femcheck.report.content import Record
 from femcheck.report.other_runs import FigureRun, SearchRun
 from femcheck.report.solid_run import SolidRun
@@ -23,7 +24,7 @@ class Origin:
     lines: tuple[tuple[str, str], ...]
 
 
-def origin_of(run: SolidRun | SearchRun | FigureRun) -> Origin:
+def origin_of(run: SolidRun | AccuracyRun | SearchRun | FigureRun) -> Origin:
     """What made a folder's results.
 
     Raises
@@ -34,9 +35,12 @@ def origin_of(run: SolidRun | SearchRun | FigureRun) -> Origin:
     return Origin(f"{folder.parent.name}/{folder.name}", tuple(_lines(run)))
 
 
-def _lines(run: SolidRun | SearchRun | FigureRun) -> Iterator[tuple[str, str]]:
+def _lines(run: SolidRun | AccuracyRun | SearchRun | FigureRun) -> Iterator[tuple[str, str]]:
     if isinstance(run, SolidRun):
         yield from _solid(run)
+    elif isinstance(run, AccuracyRun):
+        yield "design", run.name
+        yield "processor time", duration(run.seconds)
     elif isinstance(run, SearchRun):
         yield "search", run.name
         yield "time", duration(run.seconds)

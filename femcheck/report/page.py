@@ -14,6 +14,7 @@ import numpy as np
 from markupsafe import Markup
 
 from beamopt.plot.style import SUPPLY_COLOURS
+from femcheck.report.accuracy_run import AccuracyRun, read_accuracy_run
 from femcheck.report.design_view import design_views
 from femcheck.report.embedding import json_block
 from femcheck.report.folders import Kind, find_folders
@@ -28,9 +29,10 @@ __all__ = ["MARK", "report_page"]
 MARK = '<meta name="generator" content="femcheck report">'
 """Stands in the head of every report, and of no other file."""
 
-Run = SolidRun | SearchRun | FigureRun
+Run = SolidRun | AccuracyRun | SearchRun | FigureRun
 READERS: dict[Kind, Callable[[Path], Run]] = {
     Kind.SOLID: read_solid_run,
+    Kind.ACCURACY: read_accuracy_run,
     Kind.SEARCH: read_search_run,
     Kind.FIGURES: read_figure_run,
 }
@@ -49,9 +51,10 @@ def report_page(paths: Sequence[Path], title: str = "") -> str:
     """
     runs = [READERS[folder.kind](folder.path) for folder in find_folders(paths)]
     solids = [run for run in runs if isinstance(run, SolidRun)]
+    answers = [run for run in runs if isinstance(run, AccuracyRun)]
     searches = [run for run in runs if isinstance(run, SearchRun)]
     charts = [run for run in runs if isinstance(run, FigureRun)]
-    designs = design_views(solids, searches)
+    designs = design_views(solids, answers, searches)
     figures = [figures_view(run, f"chart-{place}") for place, run in enumerate(charts, 1)]
     names = dict.fromkeys([*(one.name for one in designs), *(one.name for one in figures)])
     return _render(

@@ -54,7 +54,18 @@ class Viewer {
       return;
     }
     this.shown = null;
+    this.canvas.addEventListener("webglcontextlost", (event) => {
+      if (this.drawing && event.target === this.canvas) this.giveUp(); // not one that was given back
+    });
     this.pick();
+  }
+
+  // The browser took the context away: the still picture takes the model's place.
+  giveUp() {
+    cancelAnimationFrame(this.frame);
+    this.drawing = null;
+    this.failed = true;
+    this.stage.classList.remove("live");
   }
 
   // A lost context does not come back: a new canvas takes the old one's place.
@@ -107,6 +118,7 @@ class Viewer {
 
   moveTo(place) {
     if (!this.drawing) return;
+    cancelAnimationFrame(this.frame); // else a shape that is still moving comes back
     if (place < 0) { // nothing to see: the undeformed body, its outline only
       this.shown = null;
       this.render();
@@ -114,7 +126,6 @@ class Viewer {
     }
     const to = this.model.shapes[place], from = this.shown || to;
     const began = performance.now(), lasts = still.matches || !this.shown || from === to ? 0 : 320;
-    cancelAnimationFrame(this.frame);
     const step = (now) => {
       const share = lasts ? Math.min(1, Math.max(0, (now - began) / lasts)) : 1;
       const eased = share * share * (3 - 2 * share);
@@ -228,7 +239,7 @@ function themeButton() {
 function sortable(table) {
   const body = table.tBodies[0], first = [...body.rows];
   const value = (row, column) => {
-    const text = row.cells[column].textContent.trim().replaceAll("−", "-").replaceAll(",", " ");
+    const text = row.cells[column].textContent.trim().replaceAll("−", "-").replaceAll(",", "");
     const found = parseFloat(text);
     return Number.isNaN(found) ? Infinity : found;
   };

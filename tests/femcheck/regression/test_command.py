@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,14 @@ import pytest
 
 import femcheck.regression.rods
 from beamopt.arrays import FloatArray
+from beamopt.errors import InputError
 from beamopt.rod.response import LinearResponse
 from femcheck.cli.application import run
 from femcheck.models.reply import Reply
 from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import LADDER
+from femcheck.regression.held_design import BUNDLED
+from femcheck.regression.run import regress
 from tests.femcheck.regression.small import saved
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -209,3 +213,75 @@ def test_the_committed_baseline_of_one_design_holds(
     monkeypatch.chdir(ROOT)
     assert run(["regress", "two-segments", "gravity", *HERE]) == 0
     assert "of 2 designs" in capsys.readouterr().out
+
+
+def test_a_rung_that_is_not_held_is_refused(kept: Path) -> None:
+    assert regress(["small"], kept.parent, kept.parent, rungs=["beam"]).rungs == 1
+    for rungs in (["torsion"], ["beam", "solid, wound"], ["beams"]):
+        with pytest.raises(InputError, match=rf"{rungs[-1]}.*what is held: section, outline, "):
+            regress(["small"], kept.parent, kept.parent, rungs=rungs)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["gravity", "gripper.v2", "\x01\x7f", "\U0001f642 mm³", "\\u00e4"],
+    ids=["a bundled one's", "with a point", "control", "beyond", "an escape"],
+)
+def test_designs_by_any_name(folder: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    file = str(saved(folder, name).relative_to(folder))
+    assert run(["baseline", file, "--out", "kept", *HERE]) == 0
+    text = (folder / "kept" / f"{name}.json").read_text(encoding="utf-8")
+    assert "mm³" in text  # people read it
+    assert json.loads(text)["name"] == name
+    assert run(HOLD) == 0
+    assert run([*HOLD, file]) == 0
+    assert run([*HOLD, name]) == 0
+    saved(folder, name, pressures=[0, 20, 50])
+    assert "not the design that this was written of" in complaint([*HOLD, name], capsys)
+
+
+def test_run_folders_are_told_apart(folder: Path) -> None:
+    """By the scene and seed of their search; by the folder where there is none."""
+    for name, notes in (("x", {}), ("y", {"scene": "sealed-section", "seed": 3})):
+        (folder / "runs" / name).mkdir(parents=True)
+        saved(folder / "runs" / name, "best", notes=notes)
+    assert run(["baseline", "runs/x", "runs/y", "--out", "kept", *HERE]) == 0
+    names = {file.name for file in (folder / "kept").glob("*.json")}
+    assert names == {"provenance.json", "x.json", "sealed-section-3.json"}
+    for given in ([], ["runs/x", "runs/y"], ["x", "sealed-section-3"]):
+        assert run([*HOLD, *given]) == 0
+
+
+def test_a_lost_baseline_of_the_package_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    shutil.copytree(ROOT / "reports" / "baseline", tmp_path / "kept")
+    assert {f"{name}.json" for name in BUNDLED} < {f.name for f in (tmp_path / "kept").iterdir()}
+    (tmp_path / "kept" / "gravity.json").unlink()
+    (tmp_path / "kept" / "pre-curved.json").unlink()
+    there = ["regress", "--baseline", str(tmp_path / "kept"), *HERE]
+    assert "kept: no baseline of gravity, pre-curved: " in complaint(there, capsys)
+    assert run([*there, "two-segments"]) == 0
+
+
+def test_a_time_limit_is_no_move(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    honest = femcheck.regression.rods.RodOnOutline.reply
+
+    def late(self: Any, question: Any, workers: int = 0) -> Reply:
+        reply = honest(self, question, workers)
+        tips, reasons = reply.tips.copy(), list(reply.reasons)
+        tips[3], reasons[3] = np.nan, "time limit reached at P = 3 kPa"
+        return Reply(tips, tuple(reasons))
+
+    monkeypatch.setattr(femcheck.regression.rods.RodOnOutline, "reply", late)
+    capsys.readouterr()
+    assert run([*HOLD, "--out", "moved.csv"]) == 1
+    out = capsys.readouterr().out
+    assert "rows: 0 moved" in out
+    assert "1 not compared, time limit reached" in out
+    assert "  beam of small: tips at 0, 20, 0 kPa" in out
+    assert "lowest rung that moved" not in out
+    assert "time limit reached" in Path("moved.csv").read_text()

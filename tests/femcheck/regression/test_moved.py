@@ -98,6 +98,7 @@ def test_rungs_that_say_the_same_are_held_against_each_other() -> None:
     volumes = held({"material": (600.0,), "supply 1": (150.0,)}, "solid at rest")
     (said,) = contradictions([areas, volumes], 60)
     assert said == "kept mesh and solid at rest: supply 1: 150 mm³ are not 2 mm² × 60 mm"
+    assert contradictions([areas], 60) == []  # the other rung is not wanted
 
 
 def test_what_depends_on_the_clock_is_not_held() -> None:

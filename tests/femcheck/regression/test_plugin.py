@@ -75,6 +75,41 @@ def test_only_some_rungs(project: Path, pytester: pytest.Pytester) -> None:
     wrong.stdout.fnmatch_lines(["*ValueError: rungs = *'beams'*"])
 
 
+def test_two_tests_hold_rungs_of_one_design(project: Path, pytester: pytest.Pytester) -> None:
+    two = "".join(
+        TEST.format(rungs=f", rungs={rungs}").replace("it_stays", f"it_stays_{k}")
+        for k, rungs in enumerate((["beam"], ["section", "response"]))
+    )
+    pytester.makepyfile(test_held=two)
+    file = project / "baselines" / "small.json"
+
+    def update() -> list[str]:
+        pytester.runpytest_inprocess("--femcheck-update").assert_outcomes(passed=2)
+        return list(dict.fromkeys(one["rung"] for one in json.loads(file.read_text())["held"]))
+
+    assert update() == ["section", "response", "beam"]
+    before = file.read_bytes()
+    update()
+    assert file.read_bytes() == before
+    pytester.runpytest_inprocess().assert_outcomes(passed=2)
+    saved(project, pressures=[0, 20, 50])  # nothing of the old one stays
+    assert update() == ["section", "response", "beam"]
+    pytester.runpytest_inprocess().assert_outcomes(passed=2)
+
+
+def test_a_rung_that_the_design_does_not_have(project: Path, pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(test_held=TEST.format(rungs=', rungs=["beam", "solid, wound"]'))
+    done = pytester.runpytest_inprocess("--femcheck-update")
+    done.assert_outcomes(failed=1)
+    done.stdout.fnmatch_lines(["*rungs = 'solid, wound'*of this design there is beam*"])
+    pytester.makepyfile(test_held=TEST.format(rungs=', rungs=["beam"]'))
+    pytester.runpytest_inprocess("--femcheck-update").assert_outcomes(passed=1)
+    pytester.makepyfile(test_held=TEST.format(rungs=', rungs=["section"]'))
+    done = pytester.runpytest_inprocess()
+    done.assert_outcomes(failed=1)
+    done.stdout.fnmatch_lines(["*rungs = 'section'*what is held: beam*"])
+
+
 def test_loading_the_plugin_loads_nothing_else() -> None:
     code = (
         "import sys, femcheck.regression.pytest_plugin;"

@@ -14,14 +14,17 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
+from femcheck.models.question import Question
+from femcheck.models.reply import FOUND, Reply
 from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import Held
-from femcheck.regression.held_design import HeldDesign, find_design
+from femcheck.regression.held_design import HeldDesign, design_digest, find_design
 from femcheck.regression.kept_mesh import KeptMesher, mesh_digest, read_kept, write_section
 from femcheck.regression.measure import parts_of
 from femcheck.regression.run import ContradictionError, regress, update_baseline
+from femcheck.regression.solids import LAWS, held_limit, held_solid
 from femcheck.solid.body import Body
-from tests.femcheck.regression.small import saved
+from tests.femcheck.regression.small import CIRCLES, saved
 
 RUNGS = frozenset(
     {"outline", "kept mesh", "beam on kept mesh", "gmsh", "solid at rest", "solid, rigid-section"}
@@ -119,11 +122,75 @@ def test_a_mesh_that_changed_is_no_result_that_moved(kept: Path, tmp_path: Path)
 
 def test_a_mesh_is_read_as_it_was_written(kept: Path, tmp_path: Path) -> None:
     first = read_kept(kept / "baselines" / "disc.msh")
-    write_section(tmp_path / "again.msh", first)
+    write_section(tmp_path / "again.msh", first, design_digest(sealed(kept).design))
     again = read_kept(tmp_path / "again.msh")
     for name in ("points", "triangles", "edges", "supply"):
         assert np.array_equal(getattr(first, name), getattr(again, name))
     assert mesh_digest(tmp_path / "again.msh") == mesh_digest(kept / "baselines" / "disc.msh")
+
+
+def test_a_mesh_is_made_anew_where_the_design_changed(tmp_path: Path) -> None:
+    """And kept where not even its section did, whatever gmsh would make of it today."""
+
+    def update(**changes: object) -> HeldDesign:
+        file = saved(tmp_path, "disc", sealed=True, **changes)
+        held = replace(find_design(str(file), tmp_path), rungs=frozenset({"kept mesh"}))
+        update_baseline(held, tmp_path / "baselines")
+        regress([str(file)], tmp_path / "baselines", tmp_path)
+        return held
+
+    first = update()
+    areas = read_kept(first.mesh).moments.chamber_areas
+    kept, seen = mesh_digest(first.mesh), first.mesh.stat().st_mtime_ns
+    update(notes={"seen": "today"})
+    assert first.mesh.stat().st_mtime_ns == seen
+    larger = [CIRCLES[0] | {"radius": 4.0}, *CIRCLES[1:]]
+    changed = update(drawing=larger)
+    assert mesh_digest(changed.mesh) != kept
+    assert read_kept(changed.mesh).moments.chamber_areas[0] > 1.5 * areas[0]
+
+
+def test_every_run_has_a_mesh_of_its_own(tmp_path: Path) -> None:
+    for name in ("x", "y"):
+        (tmp_path / name).mkdir()
+        saved(tmp_path / name, "best", sealed=True)
+    found = {find_design(str(tmp_path / name), tmp_path).mesh.name for name in ("x", "y")}
+    assert found == {"x.msh", "y.msh"}
+
+
+@pytest.mark.parametrize(("law", "order"), [(0, 4), (1, 2), (2, 2), (3, 2)])
+def test_tolerances_are_of_the_order_of_the_law(
+    kept: Path, law: int, order: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clamp of a material's solid is felt: its tips converge no faster than with order 2."""
+
+    class MadeUp:
+        def __init__(self, layers: int) -> None:
+            self.layers = layers
+
+        def reply(self, question: Question) -> Reply:
+            count = len(question.pressures)
+            return Reply(np.full((count, 3), [0.0, 0.0, self.layers]), count * (FOUND,))
+
+    monkeypatch.setattr(femcheck.regression.solids, "SolidModel", MadeUp)
+    tips = next(iter(held_solid(sealed(kept), LAWS[law], estimate=True)))
+    assert tips.tolerance == pytest.approx(3 / (1.5**order - 1))
+    assert f"order {order};" in tips.source
+
+
+def test_a_limit_that_came_too_late_is_in_words(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Late:
+        def __init__(self, layers: int) -> None:
+            pass
+
+        def reply(self, question: Question) -> Reply:
+            return Reply(np.full((1, 3), np.nan), ("time limit reached at P = 3 kPa",))
+
+    monkeypatch.setattr(femcheck.regression.solids, "SolidModel", Late)
+    endings, limits = held_limit(sealed(kept), estimate=False)
+    assert set(endings.rows.values()) == set(limits.rows.values()) == {"time limit reached"}
 
 
 def test_which_parts_a_design_has(kept: Path) -> None:

@@ -318,3 +318,40 @@ def test_it_prints(opened: Any) -> None:
         assert pdf.startswith(b"%PDF")
     finally:
         opened.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_a_shape_that_is_still_moving_does_not_come_back(opened: Any) -> None:
+    """Where the next combination has none to show."""
+    seen = opened.execute_async_script(
+        "const done = arguments[0], one = viewers[0];"
+        "one.choose(0);"
+        "setTimeout(() => {"
+        "  one.choose(26);"
+        "  const moving = one.shown !== null;"
+        "  one.moveTo(-1);"
+        "  setTimeout(() => done([moving, one.shown === null]), 700);"
+        "}, 700);"
+    )
+    assert seen == [True, True]
+
+
+def test_thousands_are_sorted_as_numbers(opened: Any) -> None:
+    cells = (
+        "const table = document.querySelector('.combinations');"
+        "const cells = [...table.tBodies[0].rows].map((row) => row.cells[2]);"
+    )
+    values = ["1,234", "−5", "999", "12,345,678", "–", *22 * ["0.5"]]
+    opened.execute_script(f"{cells} cells.forEach((one, k) => one.textContent = {values!r}[k])")
+    opened.find_elements("css selector", ".combinations thead button")[2].click()
+    order = opened.execute_script(f"{cells} return cells.map((one) => one.textContent)")
+    assert order == ["−5", *22 * ["0.5"], "999", "1,234", "12,345,678", "–"]
+
+
+def test_a_context_that_is_lost_leaves_the_still_picture(browser: Any, file: Path) -> None:
+    show(browser, file, 1280)
+    assert not find(browser, ".still").is_displayed()
+    browser.execute_script("viewers[0].drawing.gl.getExtension('WEBGL_lose_context').loseContext()")
+    until(lambda: find(browser, ".still").is_displayed())
+    assert not find(browser, ".stage canvas").is_displayed()
+    find(browser, "#theme").click()  # all else goes on
+    find(browser, "#theme").click()

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import femcheck.report.page
 from femcheck.cli.application import run
 from tests.femcheck.report.folders import figure_folder
 
@@ -52,3 +53,18 @@ def test_a_damaged_folder_leaves_the_page_as_it_was(
     assert run(["report", str(folder), "--out", str(out)]) == 2
     assert "provenance.json" in capsys.readouterr().err
     assert out.read_text() == before
+
+
+def test_a_page_that_is_too_large_is_said_to_be(
+    chart: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "report.html"
+    assert run(["report", str(chart), "--out", str(out)]) == 0
+    assert "above" not in capsys.readouterr().out
+    with out.open() as stream:
+        head = stream.read(500)
+    monkeypatch.setattr(femcheck.report.page, "report_page", lambda *_: head + 8_000_000 * " ")
+    assert run(["report", str(chart), "--out", str(out)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[-1].startswith("note: above 8 MB")
+    assert len(said) == 2
