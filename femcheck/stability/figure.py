@@ -126,7 +126,11 @@ def height_of(axis: Axis, pressure: float | None) -> float:
 def _limit_line(axes: Axes, one: AxisFound) -> None:
     """A bar at each column's limit, and a line from one to the next; circles of the closed form."""
     heights = [
-        height_of(one.axis, None if row.trace is None else row.trace.critical) for row in one.rows
+        # a path that the computation lost has an end, but no limit
+        height_of(
+            one.axis, row.trace.critical if row.trace and row.trace.ending.says_none else None
+        )
+        for row in one.rows
     ]
     for x, height in enumerate(heights):
         _line(axes, [x + 0.04, x + 0.96], [height, height], color=LIMIT_COLOUR, lw=2.0)

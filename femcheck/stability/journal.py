@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from beamopt.errors import InputError
+from beamopt.line_journal import LineJournal
 from femcheck.stability.axis import Axis
 from femcheck.stability.ending import Ending
 from femcheck.stability.solve import CellResult, TraceResult
@@ -34,24 +34,14 @@ class Journal:
     """
 
     def __init__(self, path: Path, axes: Mapping[str, Axis]) -> None:
-        self.path = path
         self.results: dict[Key, Result] = {}
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True) if path.exists() else []
-        whole = [line for line in lines if line.endswith("\n")]
-        if not whole:
-            path.write_text(json.dumps({"schema": SCHEMA}) + "\n", encoding="utf-8")
-            return
+        self._lines = LineJournal(path, {"schema": SCHEMA}, "stability map of solids")
         try:
-            head, *tasks = (json.loads(line) for line in whole)
-            read = [(_key(data), str(data["question"]), _result(data)) for data in tasks]
+            read = [(_key(d), str(d["question"]), _result(d)) for d in self._lines.entries]
         except (ValueError, KeyError, TypeError, AttributeError):
-            raise InputError(path, "", None, "no journal of a stability map of solids") from None
-        if head != {"schema": SCHEMA}:
-            raise InputError(path, "schema", str(head), f"this version reads {SCHEMA}")
+            raise self._lines.damaged() from None
         for key, question, result in read:
             self._take(key, question, result, axes)
-        if len(whole) < len(lines):  # a kill left half a line
-            path.write_text("".join(whole), encoding="utf-8")
 
     def _take(self, key: Key, question: str, result: Result, axes: Mapping[str, Axis]) -> None:
         name, column, number = key
@@ -61,7 +51,7 @@ class Journal:
         known = column < len(axis.columns) and number < len(axis.pressures)
         if not known or question != axis.digest(column):
             said = "what is there is of another map (specimens, pressures); name another folder"
-            raise InputError(self.path, f"axis {name}", None, said)
+            raise InputError(self._lines.path, f"axis {name}", None, said)
         self.results[key] = result
 
     def add(self, axis: Axis, key: Key, result: Result) -> None:
@@ -72,8 +62,7 @@ class Journal:
         data |= asdict(result) | {"ending": result.ending.name}
         if isinstance(result, TraceResult):
             data["track"] = [[_or_null(value) for value in row] for row in result.track]
-        with self.path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps(data, allow_nan=False) + "\n")
+        self._lines.add(data)
 
 
 def _or_null(value: float) -> float | None:
