@@ -23,6 +23,7 @@ from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.check.folder import PACKAGES
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, nothing
@@ -179,7 +180,7 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     write_atomic(out / "cheapest.csv", csv_text(CHEAPEST, best))
     write_atomic(out / "reading.md", "\n".join(f"- {line}" for line in chart.sentences()) + "\n")
     said = {"workers": workers, "design": chart.question.name, "law": chart.question.law_text}
-    about = {"measured_with": [one for one in chart.made_with if one], "written_with": provenance()}
+    about = {"measured_with": chart.made_with, **provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
     save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
 

@@ -30,7 +30,7 @@ __all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
 
 JOURNAL = "journal.jsonl"
 AGAIN = (Ending.STOPPED, Ending.TIME_OUT)  # a map that goes on tries these once more
-COMPUTED = "computed"
+WRITTEN = "written_with"  # what tables and figure were made with, which may be later
 NAMES = (
     *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),
     *("stability.svg", "stability.png"),
@@ -107,8 +107,8 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
 def _computed_before(out: Path) -> dict[str, Any]:
     """What the map was computed with, as it was said then; empty if it was not."""
     try:
-        said = json.loads((out / "provenance.json").read_text(encoding="utf-8"))[COMPUTED]
-        return dict(said)
+        said = dict(json.loads((out / "provenance.json").read_text(encoding="utf-8")))
+        return {key: value for key, value in said.items() if key != WRITTEN}
     except (OSError, ValueError, KeyError, TypeError):
         return {}
 
@@ -131,7 +131,7 @@ def _write(
         title = f"Pressure in one supply: {count} cases, solved each by itself from rest"
         figure = map_figure(found, title, caption_of(computed))
         save_figure(figure, out / "stability.svg", out / "stability.png")
-    made = {COMPUTED: computed, "written": provenance(PACKAGES)}
+    made = {**computed, WRITTEN: provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text(made))
     return found
 
