@@ -203,17 +203,27 @@ def test_a_folder_that_can_not_be_made(here: Path, capsys: pytest.CaptureFixture
     assert "file" in complaint(["study", "--out", "file/study"], capsys)
 
 
+def _heeds_ctrl_c() -> None:
+    """What a shell starts in the background ignores it, and so do all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_leaves_a_valid_run(here: Path) -> None:
     """A real interrupt to a real process; takes a few seconds to start it twice."""
     arguments = ["optimize", "random-section", "--out", "run", "--set", "search.generations=100000"]
-    with subprocess.Popen(command(*arguments), stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command(*arguments), stdout=subprocess.PIPE, text=True, preexec_fn=_heeds_ctrl_c
+    ) as process:
         journal = here / "run" / "journal.jsonl"
         patience = time.monotonic() + 60
         while not (journal.exists() and journal.stat().st_size > 10_000):
             assert time.monotonic() < patience
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        said, _ = process.communicate(timeout=60)
+        try:
+            said, _ = process.communicate(timeout=60)
+        finally:
+            process.kill()  # which a process that has ended does not notice
     assert process.returncode == 130
     assert "interrupted" in said
     assert "--resume" in said

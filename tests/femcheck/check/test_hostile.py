@@ -15,6 +15,7 @@ import pytest
 
 from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
+from beamopt.study.pool import InProcess
 from femcheck.check.case import solve_case
 from femcheck.check.checked import Checked
 from femcheck.check.run import check_design
@@ -24,7 +25,6 @@ from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import Mesher, MeshProblem
 from tests.femcheck.check.small import (
     Coarse,
-    Here,
     design_of,
     here,
     kept_files,
@@ -157,7 +157,7 @@ def test_no_time(tmp_path: Path) -> None:
     assert not list((folder / "deformed").iterdir())
 
 
-class Dying(Here):
+class Dying(InProcess):
     """A pool of which the process dies under certain cases, as a pool of processes reports it."""
 
     def __init__(self, deadly: set[tuple[float, ...]], deaths: list[int]) -> None:
