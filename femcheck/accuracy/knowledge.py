@@ -29,7 +29,7 @@ RIGID, MATERIAL = "rigid-section", "material"
 ORDERS = {RIGID: 4.0, MATERIAL: 2.0}
 """In which the tips' error falls with the layers: of a bending rod, and of a clamp's end effect."""
 
-FINER = {RIGID: (12, 16), MATERIAL: (16, 24)}
+FINER = {RIGID: (12, 16), MATERIAL: (12, 16, 24)}
 """Layers beyond the charts; their errors follow from the order."""
 
 
