@@ -30,7 +30,7 @@ ORDERS = {RIGID: 4.0, MATERIAL: 2.0}
 """In which the tips' error falls with the layers: of a bending rod, and of a clamp's end effect."""
 
 FINER = {RIGID: (12, 16), MATERIAL: (12, 16, 24)}
-"""Layers beyond the charts; their errors follow from the order."""
+"""Layers beyond the charts, as far as they are; errors follow from the order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ def _read() -> dict[str, tuple[Level, ...]]:
 def _beyond(kind: str, last: Level) -> list[Level]:
     """Finer levels than any chart has, by the order of convergence."""
     found = []
-    for layers in FINER[kind]:
+    for layers in (one for one in FINER[kind] if one > last.model.layers):
         more = layers / last.model.layers
         grading = None if last.model.grading is None else last.model.grading * more
         model = SolidModel(layers=layers, size=last.model.size, grading=grading)
