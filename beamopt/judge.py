@@ -12,7 +12,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.aim import Aim
+from beamopt.arrays import FloatArray, IndexArray
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.section.feature_points import FeaturePoints
@@ -21,7 +22,7 @@ from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes, phenotypes
 from beamopt.section.saint_venant import section_saint_venant
 from beamopt.section.seal import UNSEALED, SealRules
-from beamopt.workspace import NODES, loss, pressure_grid
+from beamopt.workspace import pressure_grid
 
 __all__ = ["Judge", "Status", "Verdict", "judge_all"]
 
@@ -63,7 +64,7 @@ class Judge:
     grid, wall_elements : the section's raster.
     rod : the actuator but for its section.
     levels : the three pressure levels [kPa].
-    target : (27, 3) target tips [mm], in the order of `pressure_grid(levels)`.
+    aim : what tips should be.
     neighbour_weight : λ of the second objective.
     rules : what a section is sealed by before it is judged.
     """
@@ -72,53 +73,53 @@ class Judge:
     wall_elements: int
     rod: RodModel
     levels: tuple[float, float, float]
-    target: FloatArray
+    aim: Aim
     neighbour_weight: float
     rules: SealRules = UNSEALED
 
     @cached_property
-    def pressures(self) -> FloatArray:
-        """(27, 3) pressure combinations [kPa]."""
-        return pressure_grid(self.levels)
-
-    def __post_init__(self) -> None:
-        if self.target.shape != (NODES, 3) or not np.isfinite(self.target).all():
-            raise ValueError(f"target: {NODES} finite tips (27, 3) in mm")
+    def _parents(self) -> IndexArray | None:
+        on_grid = np.array_equal(self.aim.pressures, pressure_grid(self.levels))
+        return parents_on_grid() if on_grid else None
 
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
-        """(n, 27, 3) tips of every candidate [mm]; NaN without material or equilibrium."""
-        return self._tips(self._measured(candidates))[0]
+        """(n, rows, 3) tips of every candidate [mm]; NaN without material or equilibrium."""
+        return self._tips(self.measured(candidates))[0]
 
     def __call__(self, candidates: Sequence[FeaturePoints]) -> list[Verdict]:
         """One verdict a candidate; the same whatever else is in the batch."""
-        measured = self._measured(candidates)
+        return self.verdicts(self.measured(candidates), [len(points) for points in candidates])
+
+    def verdicts(self, measured: Phenotypes, counts: Sequence[int]) -> list[Verdict]:
+        """Verdicts on sections that are measured already, made of `counts` feature points."""
         tips, found = self._tips(measured)
-        first = loss(tips, self.target)
+        first = self.aim.loss(tips)
         second = self.neighbour_weight * measured.neighbour_ratio
         moments = measured.moments
-        rows = zip(candidates, moments.area, moments.is_stiff, found, strict=True)
-        statuses = [_status(len(points), *row) for points, *row in rows]
+        rows = zip(counts, moments.area, moments.is_stiff, found, strict=True)
+        statuses = [_status(*row) for row in rows]
         return [
             Verdict(float(L), float(K)) if status is Status.JUDGED else _failed(status)
             for L, K, status in zip(first, second, statuses, strict=True)
         ]
 
-    def _measured(self, candidates: Sequence[FeaturePoints]) -> Phenotypes:
+    def measured(self, candidates: Sequence[FeaturePoints]) -> Phenotypes:
+        """Moments and neighbour counts of every candidate, and labels where the rod needs them."""
         twists = self.rod.twists
         return phenotypes(self.grid, candidates, self.wall_elements, self.rules, twists)
 
     def _tips(self, measured: Phenotypes) -> tuple[FloatArray, NDArray[np.bool_]]:
-        """Tips (n, 27, 3), and (n,) whether all of a candidate's are there."""
+        """Tips (n, rows, 3), and (n,) whether all of a candidate's are there."""
         rod, moments = self.rod, measured.moments
         count = len(moments.area)
         found = np.ones(count, dtype=bool)
         if rod.rung is Rung.ARC:
             with np.errstate(invalid="ignore"):
-                return rod.arcs(moments, self.pressures), found
-        tips = np.full((count, NODES, 3), np.nan)
+                return rod.arcs(moments, self.aim.pressures), found
+        tips = np.full((count, len(self.aim), 3), np.nan)
         for k in np.flatnonzero(moments.is_stiff).tolist():
             values = self._values(measured, k)
-            result = rod.tips(values, self.pressures, parents_on_grid(), all_or_none=True)
+            result = rod.tips(values, self.aim.pressures, self._parents, all_or_none=True)
             tips[k], found[k] = result.positions, result.failure is None
         return tips, found
 

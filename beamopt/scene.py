@@ -11,7 +11,8 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from beamopt.actuator import Actuator, Loading, RodRules, Vector, rod_model
+from beamopt.actuator import Actuator, Loading, RodRules, rod_model
+from beamopt.aim import aim_of_workspace
 from beamopt.bundled import bundled_scenes
 from beamopt.climb import Climb, climb
 from beamopt.design import (
@@ -28,11 +29,13 @@ from beamopt.model import Count, Model, Number, parse, quantity, read_text
 from beamopt.overrides import overridden
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.seal import Seal
+from beamopt.search_settings import Search, Stop
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.saint_venant import section_saint_venant
 from beamopt.segment_files import with_sections
-from beamopt.target import BaseFrame, Target, oddities, read_target
+from beamopt.target import Target, oddities, read_target
+from beamopt.target_choice import TargetChoice
 from beamopt.workspace import Workspace
 
 __all__ = ["Scene", "load_scene"]
@@ -62,65 +65,6 @@ class Pressures(Model):
     levels: Levels = quantity(
         (0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", unit="kPa"
     )
-
-
-class TargetChoice(Model):
-    """The workspace to reach.
-
-    kind "random": that of a random section; "section": that of a design file; "workspace": a CSV
-    file with the columns p1,p2,p3,x,y,z.
-    """
-
-    kind: Literal["random", "section", "workspace"] = quantity("random", "where it comes from")
-    seed: Count = quantity(0, 'seed of the random section, for kind "random"', low=0)
-    file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
-    base_origin: Vector = quantity((0.0, 0.0, 0.0), "the base in the table's frame", unit="mm")
-    base_x: Vector = quantity((1.0, 0.0, 0.0), "direction of the section's x axis in that frame")
-    base_z: Vector = quantity((0.0, 0.0, 1.0), "direction of the straight actuator in that frame")
-
-    @model_validator(mode="after")
-    def _has_its_file(self) -> TargetChoice:
-        if self.kind != "random" and self.file is None:
-            raise ValueError(f'target.file must be given for kind "{self.kind}"')
-        if self.kind == "random" and self.file is not None:
-            raise ValueError('target.file goes with kind "section" or "workspace"')
-        base = self.base  # checks the directions
-        if self.kind != "workspace" and base != BaseFrame():
-            raise ValueError('base_origin, base_x, base_z go with kind "workspace"')
-        return self
-
-    @property
-    def base(self) -> BaseFrame:
-        """The actuator's base in the frame of the table."""
-        return BaseFrame(self.base_origin, self.base_x, self.base_z)
-
-
-class Search(Model):
-    """The genetic algorithm."""
-
-    population: Count = quantity(20, "individuals, N_p", low=2, high=10_000)
-    generations: Count = quantity(100, "generations, N_g", low=0, high=1_000_000)
-    crossover_probability: Number = quantity(0.8, "offspring per individual, p_c", low=0, high=10)
-    mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", low=0, high=1)
-    mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", low=0, high=1)
-    swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", low=0, high=1)
-    neighbour_weight: Number = quantity(
-        1000.0, "weight of the second objective, λ", low=0, high=1e9
-    )
-    recombination: Literal["fixed", "range"] = quantity("fixed", "crossover method")
-    mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
-    seed: Count = quantity(0, "seed of everything random in the search", low=0)
-
-
-class Stop(Model):
-    """Reasons to stop before the last generation; a key that is left out never does."""
-
-    evaluations: Count | None = quantity(
-        None, "most sections judged; the first population is", low=1
-    )
-    seconds: Number | None = quantity(None, "most time, counted anew on --resume", unit="s", low=0)
-    stall: Count | None = quantity(None, "generations without a lower L", unit="generations", low=1)
-    loss: Number | None = quantity(None, "an L that is good enough", unit="mm²", low=0)
 
 
 class Scene(Model):
@@ -255,7 +199,7 @@ class Scene(Model):
             wall_elements=self.wall_elements,
             rod=self.climb.model,
             levels=self.pressures.levels,
-            target=target.workspace.tips,
+            aim=aim_of_workspace(target.workspace),
             neighbour_weight=self.search.neighbour_weight,
             rules=self.seal.rules,
         )

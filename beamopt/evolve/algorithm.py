@@ -8,10 +8,10 @@ from enum import Enum
 
 from beamopt.evolve.mutation import MUTATIONS, mutate
 from beamopt.evolve.recombination import RECOMBINATIONS
-from beamopt.evolve.streams import Purpose, stream
 from beamopt.judge import Verdict
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.streams import Purpose, stream
 
 __all__ = ["Generation", "GeneticAlgorithm", "Individual", "Stage"]
 

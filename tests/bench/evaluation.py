@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from beamopt.aim import Aim
 from beamopt.judge import Judge
 from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
 from beamopt.rod.ladder import RodModel
@@ -32,7 +33,8 @@ COUNTS = (10, 20, 50, 100, 200, 500, 1000)
 def judge_for(grid: PolarGrid) -> Judge:
     respond = partial(linear_response, youngs_modulus=300.0)
     rod = RodModel(100.0, 300.0, 100.0, respond)
-    return Judge(grid, 4, rod, LEVELS, np.zeros((27, 3)), 1000.0)
+    aim = Aim(pressure_grid(LEVELS), np.zeros((27, 3)))
+    return Judge(grid, 4, rod, LEVELS, aim, 1000.0)
 
 
 def candidates(grid: PolarGrid, count: int, points: int = 100) -> list[FeaturePoints]:

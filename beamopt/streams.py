@@ -16,6 +16,8 @@ class Purpose(IntEnum):
     RECOMBINATION = 1
     CHOICE_OF_MUTANTS = 2
     MUTATION = 3
+    REFINEMENT = 4
+    IMPROVEMENT = 5
 
 
 def stream(seed: int, purpose: Purpose, generation: int = 0, index: int = 0) -> np.random.Generator:

@@ -1,0 +1,37 @@
+"""How a scene searches, and when it stops."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from beamopt.model import Count, Model, Number, quantity
+
+__all__ = ["Search", "Stop"]
+
+
+class Search(Model):
+    """The genetic algorithm."""
+
+    population: Count = quantity(20, "individuals, N_p", low=2, high=10_000)
+    generations: Count = quantity(100, "generations, N_g", low=0, high=1_000_000)
+    crossover_probability: Number = quantity(0.8, "offspring per individual, p_c", low=0, high=10)
+    mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", low=0, high=1)
+    mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", low=0, high=1)
+    swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", low=0, high=1)
+    neighbour_weight: Number = quantity(
+        1000.0, "weight of the second objective, λ", low=0, high=1e9
+    )
+    recombination: Literal["fixed", "range"] = quantity("fixed", "crossover method")
+    mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
+    seed: Count = quantity(0, "seed of everything random in the search", low=0)
+
+
+class Stop(Model):
+    """Reasons to stop before the last generation; a key that is left out never does."""
+
+    evaluations: Count | None = quantity(
+        None, "most sections judged; the first population is", low=1
+    )
+    seconds: Number | None = quantity(None, "most time, counted anew on --resume", unit="s", low=0)
+    stall: Count | None = quantity(None, "generations without a lower L", unit="generations", low=1)
+    loss: Number | None = quantity(None, "an L that is good enough", unit="mm²", low=0)
