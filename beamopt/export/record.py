@@ -1,0 +1,98 @@
+"""What an export says about itself: volumes, areas, files, and what is wrong with the section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from beamopt.design import Design
+from beamopt.export.bodies import Solid
+from beamopt.export.drawing import Drawing
+from beamopt.export.faces import SectionFaces
+from beamopt.outline.faults import Fault
+from beamopt.section.feature_points import SUPPLIES
+
+__all__ = ["SCHEMA", "export_record", "notes_on"]
+
+SCHEMA = "beamopt-export/1"
+
+
+def export_record(
+    name: str,
+    design: Design,
+    drawing: Drawing,
+    solids: Mapping[str, Sequence[Solid]],
+    files: Mapping[str, bytes],
+    *,
+    sagitta: float,
+    cap: float,
+    faults: Sequence[Fault],
+) -> dict[str, object]:
+    """The content of export.json.
+
+    Areas and volumes are those of STEP and of the drawings, with true circles; what STL holds, and
+    the beam's section, is within straight edges and stands beside them.
+    """
+    faces = drawing.faces
+    return {
+        "schema": SCHEMA,
+        "design": name,
+        "length_mm": design.actuator.length,
+        "cap_mm": cap,
+        "sagitta_mm": sagitta,
+        "least_skin_mm": drawing.least_skin,
+        "least_wall_mm": drawing.least_wall,
+        "area_mm2": _areas(faces),
+        "solids": [
+            {"assembly": assembly} | _measures(solid)
+            for assembly, parts in solids.items()
+            for solid in parts
+        ],
+        "files": [{"name": file, "bytes": len(content)} for file, content in files.items()],
+        "notes": list(notes_on(design, faults)),
+        "faults": [str(fault) for fault in faults],
+    }
+
+
+def notes_on(design: Design, faults: Iterable[Fault]) -> tuple[str, ...]:
+    """What a person should know before making it: what the files leave out, what is wrong."""
+    notes = []
+    if design.rod.segments:
+        count = len(design.rod.segments)
+        notes.append(f"one of {count} segments' sections, extruded over the whole length")
+    if any(design.rod.rest_curvature):
+        notes.append("its mould is curved (rod.rest_curvature); the files hold it straight")
+    return (*notes, *_faults(design, faults))
+
+
+def _faults(design: Design, faults: Iterable[Fault]) -> Iterator[str]:
+    """One line: every kind, the worst first, with how often it is found and its first place."""
+    kinds: dict[str, list[Fault]] = {}
+    for fault in faults:
+        kinds.setdefault(fault.status.value, []).append(fault)
+    named = "; ".join(
+        f"{kind} ({len(found)} places, first: {found[0]})" if len(found) > 1 else str(found[0])
+        for kind, found in kinds.items()
+    )
+    if not design.seal.rules.sealed:
+        said = "not sealed, chambers may be open to a surface or have no wall"
+        yield f"{said}: {named or 'none is open, walls are not measured'}"
+    elif named:
+        yield named
+
+
+def _areas(faces: SectionFaces) -> dict[str, object]:
+    return {
+        "material": sum(face.area for face in faces.pieces),
+        "material_straight_edges": sum(face.polygon_area for face in faces.pieces),
+        "supplies": [faces.chamber_area(supply) for supply in SUPPLIES],
+    }
+
+
+def _measures(solid: Solid) -> dict[str, object]:
+    return {
+        "name": solid.name,
+        "low_mm": solid.low,
+        "high_mm": solid.high,
+        "volume_ml": solid.volume / 1000,
+        "volume_straight_edges_ml": solid.polygon_volume / 1000,
+    }

@@ -1,0 +1,182 @@
+"""A design into a folder of files that other programs take."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from beamopt.design import Design
+from beamopt.errors import InputError
+from beamopt.export.bodies import BASE_THICKNESS, Solid, body_solids, mould_solids
+from beamopt.export.drawing import Drawing, section_drawing
+from beamopt.export.dxf import dxf_bytes, require_ezdxf
+from beamopt.export.faces import section_faces
+from beamopt.export.record import SCHEMA, export_record, notes_on
+from beamopt.export.step import require_gmsh, step_text
+from beamopt.export.stl import stl_bytes
+from beamopt.export.svg import svg_text
+from beamopt.files import json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.model import read_json
+from beamopt.outline.build import build_outline
+from beamopt.provenance import provenance
+
+__all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
+
+FORMATS = ("step", "stl", "svg", "dxf")
+SAGITTA = 0.04  # mm, as `Design.outline` has it
+THICKEST, COARSEST = 1000.0, 1.0  # mm
+MARKER = "export.json"
+FILES = {
+    "body.step": "step",
+    "mould.step": "step",
+    "body.stl": "stl",
+    "cores.stl": "stl",
+    "section.svg": "svg",
+    "section.dxf": "dxf",
+}
+"""Every file that an export may write, and its format."""
+
+PACKAGES = ("shapely", "gmsh", "ezdxf")
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """What to export, and how.
+
+    formats : any of "step", "stl", "svg", "dxf".
+    cap : thickness of a closed plate at each end of the body [mm]; 0 leaves chambers open there.
+    tolerance : how far edges may be from the smooth section [mm]; None takes the design's own
+        outline, whose area and moments are the beam's.
+    base_thickness : of the plate that the mould's cores stand on [mm].
+
+    Raises
+    ------
+    InputError : no such format, or a thickness or tolerance that can not be.
+    """
+
+    formats: tuple[str, ...] = FORMATS
+    cap: float = 0.0
+    tolerance: float | None = None
+    base_thickness: float = BASE_THICKNESS
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.formats if name not in FORMATS]
+        if unknown or not self.formats:
+            said = ", ".join(unknown) or "nothing"
+            raise InputError("--format", "", said, f"any of {','.join(FORMATS)}")
+        if not (math.isfinite(self.cap) and 0 <= self.cap <= THICKEST):
+            raise InputError("--cap", "", f"{self.cap:g}", f"0 … {THICKEST:g} mm")
+        if self.tolerance is not None and not 1e-4 <= self.tolerance <= COARSEST:
+            allowed = f"0.0001 … {COARSEST:g} mm"
+            raise InputError("--tolerance", "", f"{self.tolerance:g}", allowed)
+        if not (math.isfinite(self.base_thickness) and 0 < self.base_thickness <= THICKEST):
+            said = f"above 0, at most {THICKEST:g} mm"
+            raise InputError("base_thickness", "", f"{self.base_thickness:g}", said)
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What was written.
+
+    files : name in the folder, and its size in bytes.
+    notes : what a person should know before making it, one line each.
+    """
+
+    folder: Path
+    files: tuple[tuple[str, int], ...]
+    notes: tuple[str, ...]
+
+
+def export_design(
+    design: Design, name: str, folder: Path, options: ExportOptions | None = None
+) -> Exported:
+    """Write a design's solids and drawing into a folder, its own or an empty one.
+
+    All is computed before the first file is written, each whole or not at all; the same design
+    gives the same bytes with the same versions of gmsh and ezdxf. Files of an earlier export of
+    this name that were not asked for now are removed.
+
+    Raises
+    ------
+    InputError : a package is missing, the section's polygons are invalid, caps were asked for where
+        chambers are open, or the folder holds what is not an export of this name.
+    """
+    options = options or ExportOptions()
+    _require_packages(options)
+    grid, length = design.grid.build(), design.actuator.length
+    sagitta, outline = SAGITTA, design.outline
+    if options.tolerance is not None:
+        sagitta = options.tolerance
+        outline = build_outline(grid, design.source, design.seal.rules, sagitta)
+    faces = section_faces(outline, grid, sagitta)
+    body = body_solids(faces, length, options.cap)
+    mould = mould_solids(faces, grid, length, sagitta, options.base_thickness)
+    drawing = section_drawing(design, faces, name, sagitta, options.cap)
+    _check_owner(folder, name)
+    files = dict(_contents(drawing, body, mould, options))
+    record = export_record(
+        name,
+        design,
+        drawing,
+        {"body": body, "mould": mould},
+        files,
+        sagitta=sagitta,
+        cap=options.cap,
+        faults=outline.faults,
+    )
+    _write(folder, files, json_text(record))
+    sizes = tuple((file, len(content)) for file, content in files.items())
+    return Exported(folder, sizes, notes_on(design, outline.faults))
+
+
+def _require_packages(options: ExportOptions) -> None:
+    if "step" in options.formats:
+        require_gmsh()
+    if "dxf" in options.formats:
+        require_ezdxf()
+
+
+def _check_owner(folder: Path, name: str) -> None:
+    """Take the folder, unless it holds anything but an earlier export of the same name."""
+    claim_folder(folder, MARKER, resume=True)
+    there = folder / MARKER
+    if not there.exists():
+        return
+    kept = read_json(there)
+    if kept.get("schema") != SCHEMA:
+        raise InputError(there, "schema", kept.get("schema"), f"this version writes {SCHEMA}")
+    if kept.get("design") != name:
+        said = f"is what is there; now asked for: {name}; name another folder"
+        raise InputError(there, "design", kept.get("design"), said)
+
+
+def _contents(
+    drawing: Drawing, body: tuple[Solid, ...], mould: tuple[Solid, ...], options: ExportOptions
+) -> Iterator[tuple[str, bytes]]:
+    title = drawing.title
+    makers = {
+        "body.step": lambda: step_text(body, f"{title} body").encode("latin-1"),
+        "mould.step": lambda: step_text(mould, f"{title} mould").encode("latin-1"),
+        "body.stl": lambda: stl_bytes(body),
+        "cores.stl": lambda: stl_bytes(mould),
+        "section.svg": lambda: svg_text(drawing).encode(),
+        "section.dxf": lambda: dxf_bytes(drawing),
+    }
+    for file, form in FILES.items():
+        if form in options.formats:
+            yield file, makers[file]()
+
+
+def _write(folder: Path, files: dict[str, bytes], record: str) -> None:
+    """The record first: it tells the folder's owner, should the rest be interrupted."""
+    clear_leftovers(folder, (MARKER, "provenance.json", *FILES))
+    write_atomic(folder / MARKER, record)
+    for file, content in files.items():
+        write_atomic(folder / file, content)
+    for file in FILES:
+        if file not in files:
+            (folder / file).unlink(missing_ok=True)
+    write_atomic(folder / "provenance.json", json_text(provenance(PACKAGES)))
