@@ -1,0 +1,1 @@
+"""How low the loss can be at all, whatever the cross-section."""

@@ -1,0 +1,100 @@
+"""How low the loss can be for a scene's target: three bounds, or why there is none."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+
+from beamopt.bound.prices import ray_bound
+from beamopt.bound.rays import RayBound
+from beamopt.bound.response import ResponseBound, response_bound
+from beamopt.bound.ring import RingMoments
+from beamopt.bound.ring_bound import RingBound, ring_bound
+from beamopt.bound.wanted import Wanted, wanted_of
+from beamopt.rod.ladder import Rung
+from beamopt.scene import Scene
+from beamopt.target import Target
+
+__all__ = ["BoundStatus", "Certificate", "Progress", "certificate", "quick_certificate"]
+
+Progress = Callable[[str, str], None]
+"""Gets the part of the work that goes on, and how far it is."""
+
+
+class BoundStatus(Enum):
+    """Whether there is a bound; the value is the text shown to people."""
+
+    BOUNDED = "bounded"
+    NOT_AN_ARC = "no bound: the tips of this scene's rod do not depend on a response matrix alone"
+    NO_ROWS = "no bound: the target names no tips at given pressures"
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Bounds of L = Σ w_j |h_j − t_j|² over the target's rows.
+
+    What directions and trajectories add to a scene's L is left out: it is never below 0, and so
+    the bounds hold for the whole L as well.
+
+    wanted : the rows and the rod.
+    response : numerical, over all response matrices.
+    proven : over the response matrices in a box; None where it was not asked for, as `ring`.
+    ring : numerical, over what chambers in the scene's ring can have.
+    seconds : time of each part.
+    """
+
+    status: BoundStatus
+    wanted: Wanted | None = None
+    response: ResponseBound | None = None
+    proven: RayBound | None = None
+    ring: RingBound | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+
+
+def quick_certificate(scene: Scene, target: Target) -> Certificate:
+    """The response bound alone: some hundredths of a second."""
+    if scene.climb.model.rung is not Rung.ARC:
+        return Certificate(BoundStatus.NOT_AN_ARC)
+    wanted = wanted_of(target, scene.climb.model)
+    if wanted is None:
+        return Certificate(BoundStatus.NO_ROWS)
+    started = time.perf_counter()
+    response = response_bound(wanted)
+    seconds = {"response": time.perf_counter() - started}
+    return Certificate(BoundStatus.BOUNDED, wanted, response, seconds=seconds)
+
+
+def certificate(scene: Scene, target: Target, callback: Progress | None = None) -> Certificate:
+    """All three bounds: seconds."""
+    quick = quick_certificate(scene, target)
+    wanted, response = quick.wanted, quick.response
+    if wanted is None or response is None:
+        return quick
+    say = callback or _silent
+    started = time.perf_counter()
+    proven = ray_bound(
+        wanted,
+        response=response.matrix,
+        callback=lambda k, of: say("proven", f"ray {k + 1} of {of}"),
+    )
+    between = time.perf_counter()
+    moments = RingMoments.of(scene.grid.build(), scene.seal.rules.skin)
+    ring = ring_bound(
+        wanted,
+        moments,
+        scene.actuator.youngs_modulus,
+        response.loss,
+        lambda k, low, high: say("ring", f"round {k}: {low:.4g} … {high:.4g} mm²"),
+    )
+    seconds = {
+        **quick.seconds,
+        "proven": between - started,
+        "ring": time.perf_counter() - between,
+    }
+    return Certificate(quick.status, wanted, response, proven, ring, seconds)
+
+
+def _silent(part: str, said: str) -> None:
+    """Say nothing."""

@@ -1,0 +1,122 @@
+"""The files of a bound: numbers, the ideal tips, figures."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.bound.certificate import Certificate
+from beamopt.bound.rays import RayBound
+from beamopt.bound.response import ResponseBound
+from beamopt.bound.ring_bound import RingBound
+from beamopt.bound.wanted import Wanted
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.provenance import provenance
+from beamopt.scene import Scene
+from beamopt.target import Target
+
+__all__ = ["bound_numbers", "bound_summary", "write_bound"]
+
+HEADER = "p1,p2,p3,x,y,z,target_x,target_y,target_z,weight,distance_mm"
+
+
+def write_bound(folder: Path, scene: Scene, target: Target, found: Certificate) -> None:
+    """Write what was found to a folder that is there; each file whole or not at all.
+
+    Without a bound there are only `bound.json`, which says why, and the provenance.
+    """
+    wanted, response = found.wanted, found.response
+    if wanted is not None and response is not None:
+        write_atomic(folder / "ideal.csv", _ideal_csv(wanted, response))
+        _draw(folder, scene, target, wanted, response)
+    timing = [(part, seconds, "s") for part, seconds in found.seconds.items()]
+    write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
+    write_atomic(folder / "provenance.json", json_text(provenance()))
+    numbers = {"scene": scene.name, **bound_numbers(found)}
+    write_atomic(folder / "bound.json", json_text(numbers))
+
+
+def bound_numbers(found: Certificate) -> dict[str, Any]:
+    """All that was found, without times."""
+    wanted, response = found.wanted, found.response
+    if wanted is None or response is None:
+        return {"status": found.status.value}
+    parts: dict[str, Any] = {"response": _response_numbers(wanted, response)}
+    parts["response"] |= {
+        "matrix": [row.tolist() for row in response.matrix],
+        "starts_L": response.starts.tolist(),
+    }
+    if found.proven is not None:
+        parts["proven"] = _proven(found.proven)
+    if found.ring is not None:
+        parts["ring"] = _ring(found.ring)
+    return {"status": found.status.value, "rows": len(wanted.tips), **parts}
+
+
+def bound_summary(found: Certificate, loss: float) -> dict[str, Any]:
+    """What a search's summary says of the bound, and how far a loss [mm²] is above it."""
+    if found.wanted is None or found.response is None:
+        return {"status": found.status.value}
+    above = {"L_above": loss - found.response.loss} if math.isfinite(loss) else {}
+    numbers = _response_numbers(found.wanted, found.response)
+    return {"status": found.status.value, **numbers, **above}
+
+
+def _response_numbers(wanted: Wanted, response: ResponseBound) -> dict[str, Any]:
+    """The response bound: L [mm²], distances [mm], and how sure it is."""
+    worst = int(response.distances.argmax())
+    return {
+        "L": response.loss,
+        "kind": "numerical",
+        "rms_distance": response.rms_distance(wanted),
+        "worst_distance": float(response.distances[worst]),
+        "worst_pressures": wanted.pressures[worst].tolist(),
+        "starts": len(response.starts),
+        "agreeing": response.agreeing,
+    }
+
+
+def _proven(proven: RayBound) -> dict[str, Any]:
+    rays: FloatArray = np.array([(*ray.direction, ray.rows, ray.lower) for ray in proven.rays])
+    return {
+        "L": proven.loss,
+        "kind": "proven",
+        "box": {"stretch": list(proven.box.stretch), "turn": proven.box.turn},
+        "priced": proven.priced,
+        "exact_rays_at_most": proven.upper,
+        "unmoved": proven.unmoved,
+        "rays": rays.tolist(),
+    }
+
+
+def _ring(ring: RingBound) -> dict[str, Any]:
+    return {
+        "L": ring.outer,
+        "kind": "numerical",
+        "attained": ring.inner,
+        "realisable": ring.realisable,
+        "agrees": ring.agrees,
+        "matrix": [row.tolist() for row in ring.matrix],
+        "rounds": ring.rounds,
+    }
+
+
+def _ideal_csv(wanted: Wanted, response: ResponseBound) -> str:
+    columns = wanted.pressures, response.tips, wanted.tips, wanted.weights, response.distances
+    return csv_text(HEADER, np.column_stack(columns).tolist())
+
+
+def _draw(
+    folder: Path, scene: Scene, target: Target, wanted: Wanted, response: ResponseBound
+) -> None:
+    from beamopt.plot.bound import bound_figure
+    from beamopt.plot.style import save_figure
+
+    title = f"{scene.name}: no response found with L below {response.loss:.4g} mm² (numerical)"
+    levels = None if target.workspace is None else target.workspace.levels
+    figure = bound_figure(wanted.pressures, response.tips, wanted.tips, levels, title)
+    save_figure(figure, folder / "bound.svg", folder / "bound.png")

@@ -1,0 +1,159 @@
+"""`beamopt bound`."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+
+from beamopt.bound.certificate import Certificate, Progress, certificate
+from beamopt.bound.rays import RayBound
+from beamopt.bound.response import ResponseBound
+from beamopt.bound.ring_bound import RingBound
+from beamopt.bound.wanted import Wanted
+from beamopt.bound_folder import write_bound
+from beamopt.cli.progress import console
+from beamopt.design import load_design
+from beamopt.folder import claim_folder
+from beamopt.model import parse, read_text
+from beamopt.overrides import overridden
+from beamopt.scene import Pressures, Scene, load_scene
+from beamopt.scene_text import scene_text
+from beamopt.target import Target
+from beamopt.target_choice import TargetChoice
+
+__all__ = ["bound_command", "gap_text"]
+
+NOTHING = 1e-12  # of H²: less than this is rounding
+
+
+def bound_command(subject: str, out: Path | None, overrides: Sequence[str]) -> None:
+    """Say how low L can be, whatever the section, and write it where asked."""
+    scene = _scene_of(subject, overrides)
+    target = scene.load_target()
+    if out is not None:
+        claim_folder(out, "bound.json", resume=False)
+    with _spinner() as say:
+        found = certificate(scene, target, say)
+    if out is not None:
+        write_bound(out, scene, target, found)
+    _report(scene, target, found, out)
+
+
+def _scene_of(subject: str, overrides: Sequence[str]) -> Scene:
+    """A scene; for a table or a design the default one with it as the target."""
+    path = Path(subject)
+    kind = path.suffix.lower()
+    if kind not in (".csv", ".json"):
+        return load_scene(subject, overrides)
+    named = {"name": "".join(c if c.isalnum() or c in "-_" else "-" for c in path.stem) or "target"}
+    if kind == ".csv":
+        read_text(path)  # a file that is not there comes first
+        chosen = TargetChoice(kind="workspace", file=str(path.resolve()))
+        scene = Scene(**named, target=chosen)
+    else:
+        design = load_design(path)
+        scene = Scene(
+            **named,
+            actuator=design.actuator,
+            grid=design.grid,
+            seal=design.seal,
+            pressures=Pressures(levels=design.pressures),
+            rod=design.rod,
+            loads=design.loads,
+            target=TargetChoice(kind="section", file=str(path.resolve())),
+        )
+    if not overrides:
+        return scene
+    data = overridden(tomllib.loads(scene_text(scene)), overrides)
+    return parse(Scene, data, "--set")
+
+
+@contextmanager
+def _spinner() -> Iterator[Progress]:
+    """What goes on, on a terminal's standard error; it leaves nothing behind."""
+    terminal = Console(stderr=True, highlight=False)
+    if not terminal.is_terminal:
+        yield lambda part, said: None
+        return
+    with terminal.status("response") as status:
+        yield lambda part, said: status.update(f"{part}: {said}")
+
+
+def _report(scene: Scene, target: Target, found: Certificate, out: Path | None) -> None:
+    for warning in target.warnings:
+        console.print(f"[yellow]note[/]: {warning}")
+    lines: list[tuple[str, str]]
+    wanted, response = found.wanted, found.response
+    if wanted is None or response is None:
+        lines = [("bound", found.status.value), ("rod", scene.climb.reason)]
+    else:
+        lines = _of_response(wanted, response)
+        if found.proven is not None:
+            lines += _of_rays(found.proven, wanted)
+        if found.ring is not None:
+            lines += _of_ring(found.ring, wanted)
+        if target.aim.turns or target.aim.has_paths:
+            lines.append(("note", "of the tips alone; what directions and paths add is left out"))
+        lines.append(("time", _times(found)))
+    if out is not None:
+        figures = "" if response is None else "bound.png, ideal.csv, "
+        lines.append(("files", f"{out}/ ({figures}bound.json, …)"))
+    console.print(f"[bold]{scene.name}[/]: how low L can be")
+    for name, text in lines:
+        console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
+
+
+def _of_response(wanted: Wanted, response: ResponseBound) -> list[tuple[str, str]]:
+    worst = int(response.distances.argmax())
+    at = ", ".join(f"{value:g}" for value in wanted.pressures[worst])
+    highest = _area(float(response.starts.max()), wanted.length)
+    low = _area(response.loss, wanted.length)
+    ended = f"{response.agreeing} of {len(response.starts)} starts end there, the highest"
+    said = f"numerical: no response matrix found below it; {ended} at {highest}"
+    lines = [("response", f"{low}   ({said})")]
+    if response.loss < NOTHING * wanted.length**2:
+        return lines
+    rms, far = response.rms_distance(wanted), float(response.distances[worst])
+    ideal = f"{rms:.4g} mm a node of its ideal tips from the target's"
+    return [*lines, ("RMS distance", ideal), ("worst node", f"{far:.4g} mm at {at} kPa")]
+
+
+def _of_rays(proven: RayBound, wanted: Wanted) -> list[tuple[str, str]]:
+    low = _area(proven.loss, wanted.length)
+    return [("proven", f"{low}   (no response matrix is below it, while {proven.box.text})")]
+
+
+def _of_ring(ring: RingBound, wanted: Wanted) -> list[tuple[str, str]]:
+    low, high = (_area(value, wanted.length) for value in (ring.outer, ring.inner))
+    if ring.realisable:
+        said = "chambers in the ring can have the best response"
+        return [("ring", f"{low}   (numerical: {said})")]
+    gap = ring.inner - ring.outer
+    between = f"a mixture of chambers in the ring reaches {high}, {gap:.2g} mm² more"
+    return [("ring", f"{low}   (numerical: {between})")]
+
+
+def gap_text(found: Certificate, loss: float) -> str:
+    """How far a loss [mm²] is above what was found to be the lowest, for people."""
+    if found.wanted is None or found.response is None:
+        return found.status.value
+    least, length = found.response.loss, found.wanted.length
+    above = f"L is {_area(max(0.0, loss - least), length)} above it"
+    if NOTHING * length**2 < least and loss < 10 * least:
+        above += f" ({100 * (loss / least - 1):.3g} %)"
+    return f"{_area(least, length)} (numerical, over all response matrices): {above}"
+
+
+def _times(found: Certificate) -> str:
+    total = sum(found.seconds.values())
+    parts = ", ".join(f"{part} {seconds:.2g} s" for part, seconds in found.seconds.items())
+    return f"{total:.2f} s ({parts})"
+
+
+def _area(loss: float, length: float) -> str:
+    """A loss for people; what is rounding alone is 0."""
+    return "0 mm²" if loss < NOTHING * length**2 else f"{loss:.6g} mm²"
