@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from beamopt.bound.certificate import Certificate, certificate
     from beamopt.bundled import bundled_scenes
     from beamopt.design import Design, load_design
     from beamopt.errors import InputError
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
     from beamopt.evolve.stopping import StopReason
     from beamopt.judge import Judge, Status, Verdict
     from beamopt.optimisation import optimize
+    from beamopt.pareto.front import Front
+    from beamopt.pareto.run import find_front
     from beamopt.plot.figures import design_figure
+    from beamopt.refinement import Refinement, refine_design
     from beamopt.result import Optimisation
     from beamopt.rod.response import LinearResponse, Response, linear_response
     from beamopt.scene import Scene, load_scene
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from beamopt.workspace import Workspace
 
 _HOMES = {
+    "beamopt.bound.certificate": ("Certificate", "certificate"),
     "beamopt.bundled": ("bundled_scenes",),
     "beamopt.design": ("Design", "load_design"),
     "beamopt.errors": ("InputError",),
@@ -44,7 +49,10 @@ _HOMES = {
     "beamopt.evolve.stopping": ("StopReason",),
     "beamopt.judge": ("Judge", "Status", "Verdict"),
     "beamopt.optimisation": ("optimize",),
+    "beamopt.pareto.front": ("Front",),
+    "beamopt.pareto.run": ("find_front",),
     "beamopt.plot.figures": ("design_figure",),
+    "beamopt.refinement": ("Refinement", "refine_design"),
     "beamopt.result": ("Optimisation",),
     "beamopt.rod.response": ("LinearResponse", "Response", "linear_response"),
     "beamopt.scene": ("Scene", "load_scene"),
@@ -59,9 +67,11 @@ _HOMES = {
 }
 
 __all__ = [
+    "Certificate",
     "CrossSection",
     "Design",
     "FeaturePoints",
+    "Front",
     "Generation",
     "GeneticAlgorithm",
     "InputError",
@@ -70,6 +80,7 @@ __all__ = [
     "Optimisation",
     "Plan",
     "PolarGrid",
+    "Refinement",
     "Response",
     "Scene",
     "SealRules",
@@ -79,11 +90,14 @@ __all__ = [
     "Verdict",
     "Workspace",
     "bundled_scenes",
+    "certificate",
     "design_figure",
+    "find_front",
     "linear_response",
     "load_design",
     "load_scene",
     "optimize",
+    "refine_design",
     "run",
     "run_study",
 ]

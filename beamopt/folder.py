@@ -8,7 +8,7 @@ from pathlib import Path
 
 from beamopt.errors import InputError
 
-__all__ = ["claim_folder", "clear_leftovers"]
+__all__ = ["claim_folder", "clear_leftovers", "design_file"]
 
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
 
@@ -44,3 +44,14 @@ def clear_leftovers(path: Path, names: Collection[str] | None) -> None:
         name = item.name[1:].rpartition(".tmp")[0].rpartition(".")[0]
         if LEFTOVER.fullmatch(item.name) and (names is None or name in names):
             item.unlink(missing_ok=True)
+
+
+def design_file(path: Path) -> Path:
+    """The design of a run folder: its refined one where there is one, else the best of the search.
+
+    A file is itself.
+    """
+    if not path.is_dir():
+        return path
+    refined = path / "refined.json"
+    return refined if refined.exists() else path / "best.json"

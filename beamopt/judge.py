@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.aim import Aim
+from beamopt.answers import Answers, Question
 from beamopt.arrays import FloatArray, IndexArray
+from beamopt.making import FREE, MakingRules
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.section.feature_points import FeaturePoints
@@ -35,6 +37,7 @@ class Status(Enum):
     NO_MATERIAL = "the section has no material"
     NO_EQUILIBRIUM = "the rod has no stable equilibrium under its loads at some pressures"
     NOT_STIFF = "the section has too little material to compute its bending stiffness"
+    TOO_MANY_CHAMBERS = "more separate chambers of a supply than the scene allows"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +46,23 @@ class Verdict:
 
     L : first objective, Σ of squared node distances [mm²]; infinite unless judged.
     K : second objective λ r; infinite unless judged.
+    R : what the scene's weighted rules add [mm²]; 0 without any.
     """
 
     L: float
     K: float
     status: Status = Status.JUDGED
+    R: float = 0.0
 
     @property
     def T(self) -> float:
-        """The total loss L + K, which selection looks at."""
-        return self.L + self.K
+        """The total loss L + K + R, which selection looks at."""
+        return self.L + self.K + self.R
+
+    @property
+    def ruled_loss(self) -> float:
+        """L + R, which the best is chosen by: L itself where no rule is weighted."""
+        return self.L + self.R
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +77,7 @@ class Judge:
     aim : what tips should be.
     neighbour_weight : λ of the second objective.
     rules : what a section is sealed by before it is judged.
+    making : what is asked of it beside its tips.
     """
 
     grid: PolarGrid
@@ -76,6 +87,7 @@ class Judge:
     aim: Aim
     neighbour_weight: float
     rules: SealRules = UNSEALED
+    making: MakingRules = FREE
 
     @cached_property
     def _parents(self) -> IndexArray | None:
@@ -84,7 +96,7 @@ class Judge:
 
     def tips(self, candidates: Sequence[FeaturePoints]) -> FloatArray:
         """(n, rows, 3) tips of every candidate [mm]; NaN without material or equilibrium."""
-        return self._tips(self.measured(candidates))[0]
+        return self._answers(self.measured(candidates))[0].tips
 
     def __call__(self, candidates: Sequence[FeaturePoints]) -> list[Verdict]:
         """One verdict a candidate; the same whatever else is in the batch."""
@@ -92,38 +104,70 @@ class Judge:
 
     def verdicts(self, measured: Phenotypes, counts: Sequence[int]) -> list[Verdict]:
         """Verdicts on sections that are measured already, made of `counts` feature points."""
-        tips, found = self._tips(measured)
-        first = self.aim.loss(tips)
+        answers, found = self._answers(measured)
+        first = answers.loss(self.aim)
         second = self.neighbour_weight * measured.neighbour_ratio
         moments = measured.moments
-        rows = zip(counts, moments.area, moments.is_stiff, found, strict=True)
+        third, rejected = self.making.weighted(measured), self.making.rejected(measured)
+        rows = zip(counts, moments.area, moments.is_stiff, rejected, found, strict=True)
         statuses = [_status(*row) for row in rows]
         return [
-            Verdict(float(L), float(K)) if status is Status.JUDGED else _failed(status)
-            for L, K, status in zip(first, second, statuses, strict=True)
+            Verdict(float(L), float(K), status, float(R))
+            if status is Status.JUDGED
+            else _failed(status)
+            for L, K, R, status in zip(first, second, third, statuses, strict=True)
         ]
 
     def measured(self, candidates: Sequence[FeaturePoints]) -> Phenotypes:
-        """Moments and neighbour counts of every candidate, and labels where the rod needs them."""
-        twists = self.rod.twists
-        return phenotypes(self.grid, candidates, self.wall_elements, self.rules, twists)
+        """Moments and counts of every candidate, and labels where the rod needs them."""
+        asked = self.rod.twists, self.making.counts_chambers, self.making.symmetry
+        return phenotypes(self.grid, candidates, self.wall_elements, self.rules, *asked)
 
-    def _tips(self, measured: Phenotypes) -> tuple[FloatArray, NDArray[np.bool_]]:
-        """Tips (n, rows, 3), and (n,) whether all of a candidate's are there."""
-        rod, moments = self.rod, measured.moments
-        count = len(moments.area)
+    def loss_of(self, section: SectionValues) -> float:
+        """L of one section by its values [mm²]; infinite without equilibrium."""
+        answers, found = self.question.of_section(section)
+        return float(answers.loss(self.aim)) if found else np.inf
+
+    def settled(self, section: SectionValues | Moments) -> Aim:
+        """The aim with its paths' points as rows at the pressures that bring this section nearest.
+
+        The gradient of its loss by the section, at fixed pressures, is that of L; see
+        `Aim.settled`. The aim itself where it has no paths.
+
+        Raises
+        ------
+        ValueError : the section has no equilibrium, or no material.
+        """
+        if not self.aim.has_paths:
+            return self.aim
+        values = SectionValues(section) if isinstance(section, Moments) else section
+        return self.aim.settled(self.question.reach(values).pressures)
+
+    @cached_property
+    def question(self) -> Question:
+        """What is asked of every section."""
+        low, _, high = self.levels
+        return Question(self.rod, self.aim, low, high, self._parents)
+
+    def _answers(self, measured: Phenotypes) -> tuple[Answers, NDArray[np.bool_]]:
+        """Answers (n, …) of every candidate, and (n,) whether all of a candidate's are there."""
+        count = len(measured.moments.area)
         found = np.ones(count, dtype=bool)
-        if rod.rung is Rung.ARC:
+        if self.rod.rung is Rung.ARC:
             with np.errstate(invalid="ignore"):
-                return rod.arcs(moments, self.aim.pressures), found
-        tips = np.full((count, len(self.aim), 3), np.nan)
-        for k in np.flatnonzero(moments.is_stiff).tolist():
-            values = self._values(measured, k)
-            result = rod.tips(values, self.aim.pressures, self._parents, all_or_none=True)
-            tips[k], found[k] = result.positions, result.failure is None
-        return tips, found
+                return self.question.of_arcs(measured.moments), found
+        rows, points = len(self.aim), len(self.aim.paths)
+        tips, ways = (np.full((count, rows, 3), np.nan) for _ in range(2))
+        squares = np.full((count, points), np.nan)
+        for k in np.flatnonzero(measured.moments.is_stiff).tolist():
+            one, found[k] = self.question.of_section(self.values(measured, k))
+            tips[k], ways[k] = one.tips, one.directions
+            if one.squares is not None:
+                squares[k] = one.squares
+        return Answers(tips, ways, squares), found
 
-    def _values(self, measured: Phenotypes, k: int) -> SectionValues:
+    def values(self, measured: Phenotypes, k: int) -> SectionValues:
+        """What the rod needs to know of the k-th of sections that are measured already."""
         moments = Moments(measured.moments.raw[k])
         if not self.rod.twists:
             return SectionValues(moments)
@@ -131,13 +175,15 @@ class Judge:
         return SectionValues(moments, section_saint_venant(self.grid, labels, nu))
 
 
-def _status(points: int, area: float, is_stiff: bool, has_tips: bool) -> Status:
+def _status(points: int, area: float, is_stiff: bool, rejected: bool, has_tips: bool) -> Status:
     if points == 0:
         return Status.NO_FEATURE_POINTS
     if area == 0:
         return Status.NO_MATERIAL
     if not is_stiff:
         return Status.NOT_STIFF
+    if rejected:
+        return Status.TOO_MANY_CHAMBERS
     return Status.JUDGED if has_tips else Status.NO_EQUILIBRIUM
 
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 from beamopt.design import Design
 from beamopt.evolve.algorithm import Generation, Individual
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.run import Ended, run
+from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
+from beamopt.refine.refine import StageRecord
+from beamopt.refinement import refine_points
 from beamopt.result import Optimisation
 from beamopt.run_folder import RunFolder
 from beamopt.scene import Scene
@@ -28,6 +32,7 @@ def optimize(
     executor: Executor | None = None,
     workers: int = 1,
     callback: Callable[[Generation], None] | None = None,
+    refining: Callable[[StageRecord], None] | None = None,
     figures: bool = True,
 ) -> Optimisation:
     """Search for the section whose workspace is nearest to the scene's target.
@@ -38,6 +43,7 @@ def optimize(
     out : the run folder; None keeps everything in memory.
     resume : go on with the run in `out` where it was left (also when it is complete).
     executor, workers, callback : see `beamopt.evolve.run.run`.
+    refining : called after every stage of a refinement, where the scene asks for one.
     figures : whether to draw into the run folder.
 
     Raises
@@ -57,10 +63,23 @@ def optimize(
             workers=workers,
             callback=callback,
         )
-        result = _result(scene, target, ended)
+        result = _refined(_result(scene, target, ended), refining)
         if folder is not None:
             folder.write_result(result, figures=figures)
     return result
+
+
+def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | None) -> Optimisation:
+    """With the best design refined, where the scene asks for it and the search came to an end."""
+    ended = result.status is not StopReason.INTERRUPTED
+    if not (result.scene.refine.finish and ended and result.verdict.status is Status.JUDGED):
+        return result
+    points = result.history[-1].best_ever.points
+    try:
+        found = refine_points(points, result.scene, result.target, callback)
+    except KeyboardInterrupt:
+        return replace(result, status=StopReason.INTERRUPTED)
+    return replace(result, refinement=found)
 
 
 def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
@@ -72,4 +91,6 @@ def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
 def _design(scene: Scene, one: Individual) -> Design:
     verdict = one.verdict
     losses = {} if verdict.status is not Status.JUDGED else {"L": verdict.L, "K": verdict.K}
+    if losses and scene.making.rules_set:
+        losses["R"] = verdict.R
     return scene.design_of(one.points, {"scene": scene.name, "seed": scene.search.seed, **losses})

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from beamopt.answers import Answers
+from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.design import Design
-from beamopt.errors import NoEquilibriumError
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
-from beamopt.judge import Verdict
+from beamopt.judge import Judge, Verdict
+from beamopt.reach.reach import Reach
+from beamopt.refinement import Refinement
 from beamopt.rod.ladder import Rung
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.scene import Scene
 from beamopt.target import Target
-from beamopt.workspace import NODES, loss, pressure_grid, rms_distance
+from beamopt.workspace import pressure_grid
 
 __all__ = ["Optimisation"]
 
@@ -31,6 +35,7 @@ class Optimisation:
     final : the design with the lowest L in the last population, the paper's result.
     history : one record a generation, the initial population first.
     seconds : time that the search took.
+    refinement : of the best design, where the scene asks for it and there was one.
     """
 
     status: StopReason
@@ -40,6 +45,7 @@ class Optimisation:
     final: Design
     history: tuple[Generation, ...]
     seconds: float
+    refinement: Refinement | None = None
 
     @property
     def verdict(self) -> Verdict:
@@ -48,8 +54,8 @@ class Optimisation:
 
     @property
     def rms_distance(self) -> float:
-        """Root mean square distance of the best design's 27 tips from the target's [mm]."""
-        return rms_distance(self.verdict.L, NODES)
+        """Root mean square distance of the best design's tips from the target's [mm]."""
+        return self.target.aim.rms_distance(self.verdict.L)
 
     @property
     def outline_loss(self) -> float:
@@ -58,10 +64,26 @@ class Optimisation:
         The search judges a raster; for unsealed designs the two are the same. Infinite where the
         outline's rod has no equilibrium.
         """
-        try:
-            return float(loss(self.best.workspace.tips, self.target.workspace.tips))
-        except NoEquilibriumError:
-            return math.inf
+        return self._judge.loss_of(self.best.values)
+
+    @cached_property
+    def answers(self) -> Answers:
+        """The best design's tips at the target's pressures, NaN where its rod has none."""
+        return self._judge.question.of_section(self.best.values)[0]
+
+    @cached_property
+    def reach(self) -> Reach | None:
+        """How the best design follows the target's trajectories; None where it has none."""
+        return self._judge.question.reach(self.best.values) if self.target.paths else None
+
+    @cached_property
+    def _judge(self) -> Judge:
+        return self.scene.judge(self.target)
+
+    @cached_property
+    def bound(self) -> Certificate:
+        """How low L can be for this target, whatever the section."""
+        return quick_certificate(self.scene, self.target)
 
     @property
     def neglected(self) -> float | None:

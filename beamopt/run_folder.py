@@ -11,35 +11,53 @@ from typing import Any
 import numpy as np
 
 from beamopt.actuator import Loading, RodRules
+from beamopt.aim import Aim
 from beamopt.arrays import FloatArray
+from beamopt.bound_folder import bound_summary
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.judge import Status, Verdict
+from beamopt.pairs import aim_csv
 from beamopt.provenance import provenance
+from beamopt.reach.reach import TOLERANCE
+from beamopt.refinement_folder import REFINEMENT_FILES, refinement_numbers, write_refinement
 from beamopt.result import Optimisation
+from beamopt.result_tables import paths_csv, tips_table_csv
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
-from beamopt.target import Target, tips_csv
-from beamopt.workspace import NODES, rms_distance
+from beamopt.target import Target
+from beamopt.target_choice import MOST_PATHS
 
 __all__ = ["RunFolder"]
 
-GOES_ON = {"search.generations", "stop"}  # keys that may change when a run goes on
+GOES_ON = {"search.generations", "stop", "refine"}  # keys that may change when a run goes on
 
-SOURCES = {"section": "target-source.json", "workspace": "target-source.csv"}
+SOURCES = {
+    "section": "target-source.json",
+    "workspace": "target-source.csv",
+    "points": "target-source.csv",
+}
+PATHS = tuple(f"target-path-{k}.csv" for k in range(1, MOST_PATHS + 1))
 FIGURES = ("best.svg", "best.png", "convergence.svg", "convergence.png")
-BEGINNING = ("journal.jsonl", "target.csv", *SOURCES.values())  # may be there before scene.toml
+BEGINNING = (
+    "journal.jsonl",
+    "target.csv",
+    *SOURCES.values(),
+    *PATHS,
+)  # may be there before scene.toml
 NAMES = (
     *BEGINNING,
     "scene.toml",
     "history.csv",
     "tips.csv",
+    "paths.csv",
     "best.json",
     "final.json",
     "summary.json",
     *FIGURES,
+    *REFINEMENT_FILES,
     "timing.csv",
     "provenance.json",
 )
@@ -74,37 +92,40 @@ class RunFolder:
         ------
         InputError : the run to go on with has another scene or target.
         """
-        kept, source = self._scene_to_keep(scene)
+        kept, sources = self._scene_to_keep(scene)
         if (self.path / "scene.toml").exists():
-            self._check_same(kept, source)
+            self._check_same(kept, sources)
         clear_leftovers(self.path, NAMES)
-        if source is not None:
-            write_atomic(self.path / str(kept.target.file), source)
-        pressures = target.workspace.pressures
-        write_atomic(self.path / "target.csv", tips_csv(pressures, target.workspace.tips))
+        for name, content in sources.items():
+            write_atomic(self.path / name, content)
+        if len(target.aim):
+            write_atomic(self.path / "target.csv", aim_csv(target.aim))
         write_atomic(self.path / "scene.toml", scene_text(kept))
 
-    def _scene_to_keep(self, scene: Scene) -> tuple[Scene, bytes | None]:
-        """The scene with its target's file named as it is kept here, and that file's content."""
-        if scene.target.file is None:
-            return scene, None
-        source = Path(scene.target.file)
-        name = SOURCES[scene.target.kind]
-        target = scene.target.model_copy(update={"file": name})
-        return scene.model_copy(update={"target": target}), source.read_bytes()
+    def _scene_to_keep(self, scene: Scene) -> tuple[Scene, dict[str, bytes]]:
+        """The scene with its target's files named as they are kept here, and their contents."""
+        chosen = scene.target
+        names = () if chosen.file is None else (SOURCES[chosen.kind],)
+        paths = PATHS[: len(chosen.paths)]
+        files = zip((*names, *paths), chosen.files, strict=True)
+        sources = {name: Path(file).read_bytes() for name, file in files}
+        kept = chosen.model_copy(update={"file": names[0] if names else None, "paths": paths})
+        return scene.model_copy(update={"target": kept}), sources
 
-    def _check_same(self, scene: Scene, source: bytes | None) -> None:
+    def _check_same(self, scene: Scene, sources: dict[str, bytes]) -> None:
         """Refuse to go on with another scene's run, naming the first key that differs."""
         there = self.path / "scene.toml"
         old = load_scene(there).model_dump(by_alias=True)
         new = scene.model_dump(by_alias=True)
         if old["target"]["file"] is not None:
             old["target"]["file"] = Path(old["target"]["file"]).name
+        old["target"]["paths"] = tuple(Path(path).name for path in old["target"]["paths"])
         for key, before, now in _differences(old, new):
             raise InputError(there, key, before, f"the run to go on with; now asked for: {now}")
-        kept = self.path / str(scene.target.file)
-        if source is not None and kept.exists() and kept.read_bytes() != source:
-            raise InputError(kept, "", None, "differs from the file that the scene names now")
+        for name, content in sources.items():
+            kept = self.path / name
+            if kept.exists() and kept.read_bytes() != content:
+                raise InputError(kept, "", None, "differs from the file that the scene names now")
 
     def write_result(self, result: Optimisation, *, figures: bool = True) -> None:
         """Write designs, tables and figures; each whole or not at all.
@@ -112,23 +133,38 @@ class RunFolder:
         Where no candidate, or none of the last population, could be judged, there is no design to
         write as the best, or as the final one.
         """
-        write_atomic(self.path / "history.csv", history_csv(result.history))
+        rules = result.scene.making.rules_set
+        write_atomic(self.path / "history.csv", history_csv(result.history, rules))
         if result.verdict.status is Status.JUDGED:
             result.best.save(self.path / "best.json")
             if result.history[-1].best.verdict.status is Status.JUDGED:
                 result.final.save(self.path / "final.json")
             if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
-                write_atomic(self.path / "tips.csv", _distances_csv(result))
+                self._write_tables(result)
                 if figures:
                     self._draw(result)
+        refinement = result.refinement
+        if refinement is not None:
+            write_refinement(self.path, result.scene, result.target, refinement, figures=figures)
         write_atomic(self.path / "summary.json", json_text(summary(result)))
         timing = [
             ("search", result.seconds, "s"),
             ("evaluation", result.seconds / result.evaluations, "s"),
         ]
+        if refinement is not None:
+            timing.append(("refinement", refinement.seconds, "s"))
         write_atomic(self.path / "timing.csv", csv_text("what,value,unit", timing))
         made = {"seed": result.scene.search.seed, **provenance()}
         write_atomic(self.path / "provenance.json", json_text(made))
+
+    def _write_tables(self, result: Optimisation) -> None:
+        """What the best design's tip does."""
+        aim = result.target.aim
+        if len(aim):
+            write_atomic(self.path / "tips.csv", tips_table_csv(aim, result.answers))
+        if result.reach is not None:
+            counts = [len(path) for path in result.target.paths]
+            write_atomic(self.path / "paths.csv", paths_csv(result.reach, counts))
 
     def _draw(self, result: Optimisation) -> None:
         from beamopt.plot.figures import convergence_figure, design_figure, design_title
@@ -139,7 +175,7 @@ class RunFolder:
         ever = [record.best_ever.verdict.L for record in result.history]
         mean = np.array([np.mean(_losses(record)) for record in result.history])
         for name, figure in (
-            ("best", design_figure(result.best, result.target.workspace, title)),
+            ("best", design_figure(result.best, result.target, title)),
             ("convergence", convergence_figure(lowest, mean, ever, title)),
         ):
             save_figure(figure, self.path / f"{name}.svg", self.path / f"{name}.png")
@@ -155,14 +191,35 @@ def summary(result: Optimisation) -> dict[str, Any]:
             "seed": result.scene.search.seed,
             "generations": result.history[-1].index,
             "evaluations": result.evaluations,
-            "best": _summary_of(result.verdict)
+            "best": _summary_of(result.verdict, result.target.aim)
             | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
-            "final": _summary_of(result.history[-1].best.verdict),
+            "final": _summary_of(result.history[-1].best.verdict, result.target.aim),
             "warnings": list(result.target.warnings),
         }
+        | {"bound": bound_summary(result.bound, result.verdict.L)}
+        | _making(result)
         | _rod(result)
         | _outline(result)
+        | _paths(result)
+        | _refinement(result)
     )
+
+
+def _refinement(result: Optimisation) -> dict[str, Any]:
+    """What refining the best design came to; nothing where nobody asked."""
+    found = result.refinement
+    return {} if found is None else {"refinement": refinement_numbers(found, result.scene)}
+
+
+def _making(result: Optimisation) -> dict[str, Any]:
+    """What the rules for what can be made did; nothing without any."""
+    if not result.scene.making.rules_set:
+        return {}
+    counts = result.history[-1].rejected
+    rejected = {status.name: counts[status] for status in Status if status in counts}
+    best = result.history[-1].best_ever.verdict
+    weighted = {"best_R": best.R} if best.status is Status.JUDGED else {}
+    return {"rejected": rejected, **weighted}
 
 
 def _rod(result: Optimisation) -> dict[str, Any]:
@@ -186,42 +243,49 @@ def _outline(result: Optimisation) -> dict[str, Any]:
     faults = [str(fault) for fault in result.best.outline.faults]
     if not math.isfinite(result.outline_loss):
         return {"outline": {"status": Status.NO_EQUILIBRIUM.value, "faults": faults}}
-    rms = rms_distance(result.outline_loss, NODES)
+    rms = result.target.aim.rms_distance(result.outline_loss)
     return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
 
 
-def _summary_of(verdict: Verdict) -> dict[str, Any]:
+def _paths(result: Optimisation) -> dict[str, Any]:
+    """How the best design follows trajectories; nothing without any."""
+    judged = result.verdict.status is Status.JUDGED
+    if not judged or result.reach is None or np.isnan(result.reach.distances).any():
+        return {}
+    distances = result.reach.distances
+    reached = int((distances <= TOLERANCE).sum())
+    said = {"samples": len(distances), "reached": reached, "tolerance": TOLERANCE}
+    return {"paths": said | {"largest_distance": float(distances.max())}}
+
+
+def _summary_of(verdict: Verdict, aim: Aim) -> dict[str, Any]:
     if verdict.status is not Status.JUDGED:
         return {"status": verdict.status.value}
-    rms = rms_distance(verdict.L, NODES)
+    rms = aim.rms_distance(verdict.L)
     losses = {"L": verdict.L, "K": verdict.K, "T": verdict.T, "rms_distance": rms}
     return {"status": verdict.status.value, **losses}
 
 
-def history_csv(history: tuple[Generation, ...]) -> str:
-    """L [mm²] of each generation's population and of the best so far, with that one's K."""
+def history_csv(history: tuple[Generation, ...], with_rules: bool = False) -> str:
+    """L [mm²] of each generation's population and of the best so far, with that one's K.
+
+    With rules also its R [mm²], and how many candidates so far were not judged.
+    """
     header = "generation,evaluations,lowest_L,mean_L,highest_L,lowest_T,best_ever_L,best_ever_K"
+    header += ",best_ever_R,rejected" if with_rules else ""
     rows = []
     for record in history:
         losses = _losses(record)
         lowest_T = min(one.verdict.T for one in record.population)
         ever = record.best_ever.verdict
         spread = (float(losses.min()), float(losses.mean()), float(losses.max()))
-        rows.append((record.index, record.evaluations, *spread, lowest_T, ever.L, ever.K))
+        ruled = (ever.R, sum(record.rejected.values())) if with_rules else ()
+        rows.append((record.index, record.evaluations, *spread, lowest_T, ever.L, ever.K, *ruled))
     return csv_text(header, rows)
 
 
 def _losses(record: Generation) -> FloatArray:
     return np.array([one.verdict.L for one in record.population])
-
-
-def _distances_csv(result: Optimisation) -> str:
-    """The best design's tips, the target's, and the distance between them."""
-    space, wanted = result.best.workspace, result.target.workspace.tips
-    away = np.linalg.norm(space.tips - wanted, axis=1)
-    table = np.column_stack([space.pressures, space.tips, wanted, away])
-    header = "p1,p2,p3,x,y,z,target_x,target_y,target_z,distance_mm"
-    return csv_text(header, table.tolist())
 
 
 def _differences(old: Any, new: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:

@@ -12,7 +12,6 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules, rod_model
-from beamopt.aim import aim_of_workspace
 from beamopt.bundled import bundled_scenes
 from beamopt.climb import Climb, climb
 from beamopt.design import (
@@ -25,11 +24,12 @@ from beamopt.design import (
 )
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.judge import Judge
+from beamopt.making import Making
 from beamopt.model import Count, Model, Number, parse, quantity, read_text
 from beamopt.overrides import overridden
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.seal import Seal
-from beamopt.search_settings import Search, Stop
+from beamopt.search_settings import Refining, Search, Stop
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.saint_venant import section_saint_venant
@@ -79,11 +79,13 @@ class Scene(Model):
     grid: Grid = Grid()
     section: SectionRules = SectionRules()
     seal: Seal = Seal()
+    making: Making = Making()
     pressures: Pressures = Pressures()
     rod: RodRules = RodRules()
     loads: Loading = Loading()
     target: TargetChoice = TargetChoice()
     search: Search = Search()
+    refine: Refining = Refining()
     stop: Stop = Stop()
 
     @field_validator("name")
@@ -96,16 +98,23 @@ class Scene(Model):
     @model_validator(mode="after")
     def _leaves_room(self) -> Scene:
         self.seal.check_fits(self.grid.build())
+        self.making.check_fits(self.grid.build())
         return self
 
     def load_target(self) -> Target:
-        """The target workspace.
+        """What the tip should reach.
 
         Raises
         ------
-        InputError : its file is missing or wrong, or does not fit the scene.
+        InputError : a file is missing or wrong, or does not fit the scene.
         """
+        return self.target.with_paths(self._target_without_paths(), self.actuator.length)
+
+    def _target_without_paths(self) -> Target:
         chosen = self.target
+        if chosen.kind in ("points", "paths"):
+            straight = self.climb.model.straight_length is not None
+            return chosen.pairs(self.actuator.length, straight)
         if chosen.kind == "workspace":
             straight = self.climb.model.straight_length is not None
             about = self.pressures.levels, self.actuator.length, chosen.base, straight
@@ -116,7 +125,8 @@ class Scene(Model):
         design = self.design_of(points)
         if not design.section.moments.is_stiff:
             raise InputError("", "target.seed", chosen.seed, "this random section has no material")
-        return Target(self._workspace(design, "target.seed", chosen.seed), design.section)
+        workspace = self._workspace(design, "target.seed", chosen.seed)
+        return Target.of_workspace(workspace, design.section)
 
     def _workspace_of_design(self, path: Path) -> Target:
         """A design's workspace: with its own length and material, at this scene's pressures.
@@ -130,7 +140,7 @@ class Scene(Model):
             design = design.model_copy(update={"rod": rules, "loads": self.loads})
         workspace = self._workspace(design, "target.file", str(path))
         warnings = oddities(workspace.tips, workspace.levels, self.climb.model.straight_length)
-        return Target(workspace, design.section, warnings)
+        return Target.of_workspace(workspace, design.section, warnings)
 
     def _workspace(self, design: Design, key: str, value: object) -> Workspace:
         try:
@@ -199,9 +209,10 @@ class Scene(Model):
             wall_elements=self.wall_elements,
             rod=self.climb.model,
             levels=self.pressures.levels,
-            aim=aim_of_workspace(target.workspace),
+            aim=target.aim,
             neighbour_weight=self.search.neighbour_weight,
             rules=self.seal.rules,
+            making=self.making.rules(self.grid.build(), self.actuator.length),
         )
 
 
@@ -238,7 +249,4 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
         parse(Scene, tomllib.loads(text), path)  # what is wrong with the file itself comes first
         raise InputError("--set", error.key, error.value, error.allowed) from None
     read = read.model_copy(update={"rod": with_sections(read.rod, path.parent)})
-    if read.target.file is None:
-        return read
-    file = str(path.parent.resolve() / read.target.file)
-    return read.model_copy(update={"target": read.target.model_copy(update={"file": file})})
+    return read.model_copy(update={"target": read.target.beside(path.parent.resolve())})

@@ -6,7 +6,7 @@ from typing import Literal
 
 from beamopt.model import Count, Model, Number, quantity
 
-__all__ = ["Search", "Stop"]
+__all__ = ["Refining", "Search", "Stop"]
 
 
 class Search(Model):
@@ -18,6 +18,9 @@ class Search(Model):
     mutation_probability: Number = quantity(0.1, "share of individuals mutated, p_m", low=0, high=1)
     mutated_share: Number = quantity(0.1, "mutated edges per feature point, p_f", low=0, high=1)
     swapped_share: Number = quantity(0.5, "share swapped by fixed recombination, ν", low=0, high=1)
+    improved_share: Number = quantity(
+        0.0, "share of individuals refined a little in a generation, the best first", low=0, high=1
+    )
     neighbour_weight: Number = quantity(
         1000.0, "weight of the second objective, λ", low=0, high=1e9
     )
@@ -35,3 +38,24 @@ class Stop(Model):
     seconds: Number | None = quantity(None, "most time, counted anew on --resume", unit="s", low=0)
     stall: Count | None = quantity(None, "generations without a lower L", unit="generations", low=1)
     loss: Number | None = quantity(None, "an L that is good enough", unit="mm²", low=0)
+
+
+class Refining(Model):
+    """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions."""
+
+    finish: bool = quantity(False, "whether a search ends by refining its best design")
+    flips: Count = quantity(40_000, "flips of a type proposed in a round", low=0, high=10**9)
+    walks: Count = quantity(
+        20, "chains of flips in a round, each judged at its end", low=1, high=1_000_000
+    )
+    hot: Number = quantity(150.0, "first temperature of the annealing", unit="mm²", low=1e-9)
+    cold: Number = quantity(3.0, "last temperature of the annealing", unit="mm²", low=1e-9)
+    steps: Count = quantity(200, "most sections judged while points move", low=0)
+    outline_steps: Count = quantity(
+        40, "most outlines judged in the end, of sealed sections", low=0
+    )
+    rounds: Count = quantity(8, "most rounds; fewer where moving points settles", low=1, high=1000)
+    good_enough: Number = quantity(0.05, "a loss with nothing left to refine", unit="mm²", low=0)
+    ratio_enough: Number = quantity(
+        0.75, "share of the first neighbour ratio that is low enough", low=0, high=1
+    )

@@ -18,6 +18,9 @@ class Purpose(IntEnum):
     MUTATION = 3
     REFINEMENT = 4
     IMPROVEMENT = 5
+    FRONT_PARENTS = 6
+    FRONT_OFFSPRING = 7
+    FRONT_SURVIVAL = 8
 
 
 def stream(seed: int, purpose: Purpose, generation: int = 0, index: int = 0) -> np.random.Generator:

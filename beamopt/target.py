@@ -2,36 +2,55 @@
 
 from __future__ import annotations
 
-import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from beamopt.aim import Aim, aim_of_workspace
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import csv_text
-from beamopt.model import read_text
 from beamopt.section.cross_section import CrossSection
+from beamopt.table import Table, read_table
 from beamopt.workspace import NODES, Workspace, node_index, pressure_grid
 
-__all__ = ["BaseFrame", "Target", "oddities", "read_target", "tips_csv"]
+__all__ = ["COLUMNS", "BaseFrame", "Target", "check_scale", "oddities", "read_target", "tips_csv"]
 
-COLUMNS = ("p1", "p2", "p3", "x", "y", "z")
+COLUMNS = {"p1": "kPa", "p2": "kPa", "p3": "kPa", "x": "mm", "y": "mm", "z": "mm"}
+ONLY_OF_POINTS = ("weight", "tx", "ty", "tz", "direction_weight")
 SAME_PRESSURE = 1e-6  # kPa
-FARTHEST = 1e6  # mm, kPa; beyond any actuator
 
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A target workspace, the section it was made from if there is one, and what is odd about it.
+    """What a section is searched for, the section it was made from if any, and what is odd.
 
+    workspace : where the aim's rows are its 27 nodes; else None.
+    paths : (k, 3) samples of each trajectory [mm], corners included; joined in `aim.paths`.
     warnings : sentences for people.
     """
 
-    workspace: Workspace
+    aim: Aim
+    workspace: Workspace | None = None
     section: CrossSection | None = None
     warnings: tuple[str, ...] = ()
+    paths: tuple[FloatArray, ...] = ()
+
+    @classmethod
+    def of_workspace(
+        cls,
+        workspace: Workspace,
+        section: CrossSection | None = None,
+        warnings: tuple[str, ...] = (),
+    ) -> Target:
+        """The paper's: 27 tips that count alike."""
+        return cls(aim_of_workspace(workspace), workspace, section, warnings)
+
+    def with_paths(self, paths: tuple[FloatArray, ...], weight: float) -> Target:
+        """The same with trajectories, each (k, 3) points [mm] of that weight."""
+        aim = replace(self.aim, paths=np.concatenate(paths), path_weight=weight)
+        return replace(self, aim=aim, paths=paths)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +78,13 @@ class BaseFrame:
 
     def to_local(self, points: FloatArray) -> FloatArray:
         """Points (n, 3) of the file's frame in the actuator's own."""
-        if self == BaseFrame():
-            return points
+        return points if self == BaseFrame() else self.turned(points - np.asarray(self.origin))
+
+    def turned(self, directions: FloatArray) -> FloatArray:
+        """Directions (n, 3) of the file's frame in the actuator's own axes."""
         x = np.asarray(self.x) / np.linalg.norm(self.x)
         z = np.asarray(self.z) / np.linalg.norm(self.z)
-        axes = np.stack([x, np.cross(z, x), z], axis=1)
-        return np.asarray((points - np.asarray(self.origin)) @ axes)
+        return np.asarray(directions @ np.stack([x, np.cross(z, x), z], axis=1))
 
 
 def read_target(
@@ -86,11 +106,11 @@ def read_target(
     InputError : a column, row or combination is missing, doubled, not a number, or the positions
         can not be mm.
     """
-    rows = _rows(path)
+    table = read_table(path, COLUMNS)
     tips = np.full((NODES, 3), np.nan)
     found: dict[int, int] = {}
     extra = 0
-    for line, values in rows:
+    for line, values in zip(table.lines, table.stacked(list(COLUMNS)), strict=True):
         node = _node(values[:3], levels)
         if node is None:
             extra += 1
@@ -108,62 +128,31 @@ def read_target(
             f"{len(found)} of {NODES} pressure combinations",
             None,
             f"{_combination(absent)} has none; every combination of {_listed(levels)} kPa needs a "
-            f"row, and the table's pressures are {_found_levels(rows)} (are they kPa?)",
+            f"row, and the table's pressures are {_found_levels(table)} (are they kPa?)",
         )
     tips = (base or BaseFrame()).to_local(tips)
-    _check_scale(path, tips, length)
+    check_scale(path, tips, length)
     warnings = oddities(tips, levels, length if straight else None)
+    return Target.of_workspace(
+        Workspace(levels, tips), None, warnings + _left_out(table, extra, levels)
+    )
+
+
+def _left_out(table: Table, extra: int, levels: tuple[float, float, float]) -> tuple[str, ...]:
+    """What a table holds that 27 tips that count alike do not."""
+    said = []
     if extra:
-        warnings += (f"{extra} rows at other pressures than {_listed(levels)} kPa were left out",)
-    return Target(Workspace(levels, tips), None, warnings)
+        said.append(
+            f"{extra} rows at other pressures than {_listed(levels)} kPa were left out; "
+            'kind = "points" takes rows at any'
+        )
+    columns = [name for name in ONLY_OF_POINTS if name in table.header]
+    if columns:
+        said.append(f'the columns {", ".join(columns)} were left out; kind = "points" takes them')
+    return tuple(said)
 
 
-def _rows(path: Path) -> list[tuple[int, list[float]]]:
-    lines = [
-        (number, line)
-        for number, line in enumerate(read_text(path).splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise InputError(path, "", "an empty file", f"a table with the columns {','.join(COLUMNS)}")
-    header = [name.strip() for name in _cells(path, *lines[0])]
-    for name in COLUMNS:
-        if header.count(name) != 1:
-            raise InputError(
-                path, "header", ",".join(header), f"must name {','.join(COLUMNS)} once each"
-            )
-    places = [header.index(name) for name in COLUMNS]
-    return [
-        (number, _numbers(path, number, line, places, len(header))) for number, line in lines[1:]
-    ]
-
-
-def _numbers(path: Path, number: int, line: str, places: list[int], columns: int) -> list[float]:
-    cells = _cells(path, number, line)
-    if len(cells) > columns:
-        raise InputError(path, f"line {number}", line, f"has more cells than the {columns} columns")
-    values = []
-    for name, place in zip(COLUMNS, places, strict=True):
-        text = cells[place].strip() if place < len(cells) else ""
-        try:
-            value = float(text)
-        except ValueError:
-            value = np.nan
-        if not abs(value) <= FARTHEST:
-            unit = "kPa" if name.startswith("p") else "mm"
-            raise InputError(path, f"line {number}, {name}", text, f"a finite number of {unit}")
-        values.append(value)
-    return values
-
-
-def _cells(path: Path, number: int, line: str) -> list[str]:
-    try:
-        return next(csv.reader([line]))
-    except csv.Error as error:
-        raise InputError(path, f"line {number}", None, f"no row of a table: {error}") from None
-
-
-def _node(pressures: list[float], levels: tuple[float, float, float]) -> int | None:
+def _node(pressures: FloatArray, levels: tuple[float, float, float]) -> int | None:
     near = np.abs(np.subtract.outer(pressures, levels)) < SAME_PRESSURE
     if not near.any(axis=1).all():
         return None
@@ -171,7 +160,8 @@ def _node(pressures: list[float], levels: tuple[float, float, float]) -> int | N
     return node_index(int(i), int(j), int(k))
 
 
-def _check_scale(path: Path, tips: FloatArray, length: float) -> None:
+def check_scale(path: Path, tips: FloatArray, length: float) -> None:
+    """Refuse tips (n, 3) that can not be mm, for an actuator of `length` [mm]."""
     farthest = float(np.linalg.norm(tips, axis=1).max())
     if not length / 20 <= farthest <= 50 * length:
         raise InputError(
@@ -202,12 +192,12 @@ def oddities(
     return ()
 
 
-def _combination(values: list[float] | FloatArray) -> str:
+def _combination(values: FloatArray) -> str:
     return "(" + ", ".join(f"{value:g}" for value in values[:3]) + ") kPa"
 
 
-def _found_levels(rows: list[tuple[int, list[float]]]) -> str:
-    found = sorted({value for _, values in rows for value in values[:3]})
+def _found_levels(table: Table) -> str:
+    found = sorted(set(table.stacked(["p1", "p2", "p3"]).ravel().tolist()))
     return ", ".join(f"{value:g}" for value in found[:6]) + (", …" if len(found) > 6 else "")
 
 

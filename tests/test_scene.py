@@ -30,9 +30,10 @@ def test_bundled_scenes_have_their_target(name: str) -> None:
     target = scene.load_target()
     assert scene.name == name
     assert target.warnings == ()
-    if scene.climb.model.straight_length is not None:
+    if scene.climb.model.straight_length is not None and target.workspace is not None:
         np.testing.assert_allclose(target.workspace.tips[0], (0, 0, 100), atol=1e-12)
-    assert (target.section is None) == (name == "hand-drawn-workspace")
+    assert (target.workspace is None) == (name in ("pairs", "spiral"))
+    assert (target.section is None) == (name in ("hand-drawn-workspace", "pairs", "spiral"))
 
 
 def test_a_written_scene_is_read_as_the_same(tmp_path: Path) -> None:
@@ -84,6 +85,13 @@ BAD = [
     ("[target]\nkind = 'workspace'", "target", "file must be given"),
     ("[target]\nfile = 'a.csv'", "target", 'goes with kind "section"'),
     ("[target]\nkind='workspace'\nfile='a'\nbase_z=[1,0,0]", "target", "perpendicular"),
+    ("[target]\nkind = 'points'", "target", "file must be given"),
+    ("[target]\nkind = 'paths'", "target", "paths and path_weight must be given"),
+    ("[target]\nkind='paths'\npaths=['a']\npath_weight=0", "target", "must be given"),
+    ("[target]\npaths = 'a.csv'", "target.paths = 'a.csv'", "must be a list"),
+    ("[target]\npaths = ['a']\npath_step = 0", "target.path_step = 0", "0.01 … 1000 mm"),
+    ("[target]\ndirection_weight = 1", "target", 'goes with kind "points"'),
+    ("[target]\nbase_x = [0, 1, 0]", "target", 'kind "workspace" or "points", or with paths'),
     ("name = 'a/b'", "name = 'a/b'", "letters, digits"),
     ("surprise = 1", "surprise = 1", "known here: schema, name"),
     ("schema = 'beamopt-scene/9'", "schema = 'beamopt-scene/9'", "reads beamopt-scene/1"),

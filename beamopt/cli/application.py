@@ -57,12 +57,31 @@ def optimize(
     seed: Seed = None,
     workers: Workers = 1,
     resume: Resume = False,
+    refine: Annotated[
+        bool, typer.Option("--refine", help="Refine the best design in the end.")
+    ] = False,
     overrides: Overrides = None,
 ) -> None:
     """Search for the section whose workspace is nearest to the scene's target."""
     from beamopt.cli.optimize import optimize_command
 
-    optimize_command(scene, out, seed, workers, resume, overrides or [])
+    finish = ["refine.finish=true"] if refine else []
+    optimize_command(scene, out, seed, workers, resume, [*(overrides or []), *finish])
+
+
+@app.command()
+def refine(
+    subject: Annotated[
+        Path, typer.Argument(metavar="RUN|DESIGN", help="Run folder, or design file.")
+    ],
+    scene: Annotated[str | None, typer.Option(help="For a design file: target and rules.")] = None,
+    out: Annotated[Path | None, typer.Option(help="For a design file; NAME-refined.")] = None,
+    overrides: Overrides = None,
+) -> None:
+    """Anneal a design's types and move its points until its loss is as low as that gets."""
+    from beamopt.cli.refine import refine_command
+
+    refine_command(subject, scene, out, overrides or [])
 
 
 @app.command()
@@ -72,12 +91,45 @@ def study(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first iteration.")] = 0,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Searches at once.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the study there.")] = False,
+    target: Annotated[
+        list[str] | None, typer.Option(help="Bundled scene, repeated; the paper's three.")
+    ] = None,
+    refine: Annotated[bool, typer.Option(help="Refine the best design of each.")] = True,
     overrides: Overrides = None,
 ) -> None:
     """Repeat the paper's table: three targets, four methods, several initial populations."""
     from beamopt.cli.study import study_command
+    from beamopt.study.plan import TARGETS, Plan
 
-    study_command(out, iterations, seed, workers, resume, overrides or [])
+    targets = tuple(target or TARGETS)
+    plan = Plan(iterations, seed, tuple(overrides or []), targets, refine)
+    study_command(out, plan, workers, resume)
+
+
+@app.command()
+def pareto(
+    scene: SceneName,
+    objectives: Annotated[
+        str, typer.Option(metavar="L,…", help="L and one or more of ratio, mass, chambers.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder; fronts/SCENE-OBJECTIVES-SEED if left out.")
+    ] = None,
+    seed: Seed = None,
+    generations: Annotated[
+        int | None, typer.Option(min=0, max=1_000_000, help="Replaces the scene's.")
+    ] = None,
+    population: Annotated[int, typer.Option(min=4, max=10_000, help="Of a generation.")] = 100,
+    workers: Workers = 1,
+    resume: Resume = False,
+    overrides: Overrides = None,
+) -> None:
+    """Search for designs of which none is better than another in all of several objectives."""
+    from beamopt.cli.pareto import pareto_command
+
+    replaced = {"search.seed": seed, "search.generations": generations}
+    own = [f"{key}={value}" for key, value in replaced.items() if value is not None]
+    pareto_command(scene, objectives, out, [*(overrides or []), *own], population, workers, resume)
 
 
 @app.command()
@@ -100,6 +152,26 @@ def tips(
 
 
 @app.command()
+def reach(
+    design: Annotated[
+        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
+    ],
+    path: Annotated[
+        Path, typer.Argument(metavar="PATH.csv", help="Trajectory: a poly-line x,y,z in mm.")
+    ],
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print a table with all digits.")] = False,
+    tolerance: Annotated[
+        float, typer.Option(metavar="MM", help="Within which a point is reached.")
+    ] = 0.1,
+    step: Annotated[float, typer.Option(metavar="MM", help="Largest distance of points.")] = 5.0,
+) -> None:
+    """Find the pressures that bring a design's tip along a trajectory; exit code 1 if none do."""
+    from beamopt.cli.reach import reach_command
+
+    reach_command(design, path, as_csv, tolerance, step)
+
+
+@app.command()
 def show(
     design: Annotated[
         Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
@@ -113,6 +185,45 @@ def show(
     from beamopt.cli.show import show_command
 
     show_command(design, out)
+
+
+@app.command()
+def export(
+    design: Annotated[
+        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
+    ],
+    out: Annotated[Path | None, typer.Option(help="Folder; NAME-export here if left out.")] = None,
+    formats: Annotated[
+        str | None,
+        typer.Option("--format", metavar="step,stl,svg,dxf", help="Some of them; all if left out."),
+    ] = None,
+    cap: Annotated[
+        float, typer.Option(metavar="MM", help="Closed plates at both ends; 0: open.")
+    ] = 0.0,
+    tolerance: Annotated[
+        float | None, typer.Option(metavar="MM", help="Of edges; the design's own if left out.")
+    ] = None,
+) -> None:
+    """Write the body and its mould as STEP and STL, and a 1:1 drawing as SVG and DXF."""
+    from beamopt.cli.export import export_command
+
+    export_command(design, out, formats, cap, tolerance)
+
+
+@app.command()
+def bound(
+    subject: Annotated[
+        str, typer.Argument(metavar="TARGET|SCENE", help="Scene, table (.csv) or design (.json).")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for numbers, ideal tips and figures.")
+    ] = None,
+    overrides: Overrides = None,
+) -> None:
+    """Say how low the loss L can be at all, whatever the section."""
+    from beamopt.cli.bound import bound_command
+
+    bound_command(subject, out, overrides or [])
 
 
 @app.command()

@@ -10,11 +10,15 @@ from pathlib import Path
 
 import typer
 
+from beamopt.cli.bound import gap_text
 from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.refine import refinement_lines
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
 from beamopt.optimisation import optimize
+from beamopt.reach.reach import TOLERANCE
+from beamopt.refine.refine import StageRecord
 from beamopt.result import Optimisation
 from beamopt.scene import load_scene
 
@@ -45,8 +49,18 @@ def optimize_command(
             said = f"L {best.L:.4g} mm²  T {best.T:.4g}"
             bar.update(task, completed=record.index + 1, said=said)
 
+        def refining(record: StageRecord) -> None:
+            said = f"refining: L {record.verdict.L:.4g} mm²"
+            bar.update(task, said=said)
+
         result = optimize(
-            scene, folder, resume=resume, executor=executor, workers=workers, callback=show
+            scene,
+            folder,
+            resume=resume,
+            executor=executor,
+            workers=workers,
+            callback=show,
+            refining=refining,
         )
     _report(result, folder)
     if result.status is StopReason.INTERRUPTED:
@@ -65,6 +79,9 @@ def _report(result: Optimisation, folder: Path) -> None:
         lines += _found(result)
     else:
         lines.append(("no design", result.verdict.status.value))
+    if result.refinement is not None:
+        lines += refinement_lines(result.refinement, result.scene, result.bound)
+    lines += _rejected(result)
     lines.append(("time", f"{result.seconds:.2f} s"))
     lines.append(("files", f"{folder}/ ({', '.join(_worth_a_look(folder))}, …)"))
     for warning in result.target.warnings:
@@ -80,13 +97,30 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
     chambers = " + ".join(str(count) for count in pieces.chambers)
     return [
         ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
+        ("bound", gap_text(result.bound, verdict.L)),
         *_outline(result),
         *_neglected(result),
-        ("RMS distance", f"{result.rms_distance:.4g} mm a node"),
+        ("RMS distance", f"{result.rms_distance:.4g} mm a {_unit(result)}"),
+        *_followed(result),
         ("K", f"{verdict.K:.6g}"),
-        ("T = L + K", f"{verdict.T:.6g}"),
+        *_total(result),
         ("islands", f"{pieces.islands} of material; chambers per supply {chambers}"),
     ]
+
+
+def _total(result: Optimisation) -> list[tuple[str, str]]:
+    """The total loss, with what weighted rules add where there are rules."""
+    verdict = result.verdict
+    if not result.scene.making.rules_set:
+        return [("T = L + K", f"{verdict.T:.6g}")]
+    return [("R", f"{verdict.R:.6g} mm²"), ("T = L+K+R", f"{verdict.T:.6g}")]
+
+
+def _rejected(result: Optimisation) -> list[tuple[str, str]]:
+    """How many candidates were not judged, by reason; nothing where all were."""
+    counts = result.history[-1].rejected
+    said = "; ".join(f"{counts[one]}: {one.value}" for one in Status if one in counts)
+    return [("not judged", said)] if said else []
 
 
 def _outline(result: Optimisation) -> list[tuple[str, str]]:
@@ -95,6 +129,21 @@ def _outline(result: Optimisation) -> list[tuple[str, str]]:
         return []
     faults = [("note", str(fault)) for fault in result.best.outline.faults]
     return [("L of outline", f"{result.outline_loss:.6g} mm²"), *faults]
+
+
+def _unit(result: Optimisation) -> str:
+    return "node" if result.target.workspace is not None and not result.target.paths else "point"
+
+
+def _followed(result: Optimisation) -> list[tuple[str, str]]:
+    """How trajectories are followed."""
+    if result.reach is None:
+        return []
+    distances = result.reach.distances
+    reached = int((distances <= TOLERANCE).sum())
+    worst = f"; the farthest is {distances.max():.3g} mm away" if reached < len(distances) else ""
+    said = f"{reached} of {len(distances)} points reached within {TOLERANCE:g} mm{worst}"
+    return [("trajectories", said)]
 
 
 def _neglected(result: Optimisation) -> list[tuple[str, str]]:
@@ -107,5 +156,13 @@ def _neglected(result: Optimisation) -> list[tuple[str, str]]:
 
 
 def _worth_a_look(folder: Path) -> list[str]:
-    names = ("best.json", "best.png", "tips.csv", "convergence.png", "summary.json")
+    names = (
+        "refined.json",
+        "refined.png",
+        "best.json",
+        "best.png",
+        "tips.csv",
+        "convergence.png",
+        "summary.json",
+    )
     return [name for name in names if (folder / name).exists()]

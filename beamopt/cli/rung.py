@@ -7,6 +7,7 @@ from pathlib import Path
 from beamopt.cli.progress import console
 from beamopt.climb import Climb
 from beamopt.design import load_design
+from beamopt.folder import design_file
 from beamopt.rod.ladder import Rung
 from beamopt.scene import load_scene
 
@@ -25,5 +26,5 @@ def rung_command(subject: str, overrides: list[str]) -> None:
 def _climb(subject: str, overrides: list[str]) -> Climb:
     path = Path(subject)
     if path.is_dir() or path.suffix == ".json":
-        return load_design(path / "best.json" if path.is_dir() else path).climb
+        return load_design(design_file(path)).climb
     return load_scene(subject, overrides).climb

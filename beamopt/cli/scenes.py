@@ -30,13 +30,13 @@ def init_command(file: Path, start: str | None) -> None:
     if start is not None and start not in bundled_scenes():
         raise InputError("--scene", "", start, f"one of {', '.join(bundled_scenes())}")
     scene = Scene() if start is None else load_scene(start)
-    if scene.target.file is not None:  # the scene is to stand on its own
-        source = Path(scene.target.file)
+    sources = [Path(source) for source in scene.target.files]  # the scene is to stand on its own
+    for source in sources:
         beside = file.with_name(source.name)
         if beside.exists():
             raise InputError(beside, "", None, "exists already; name a file in another folder")
-        write_atomic(beside, source.read_bytes())
-        target = scene.target.model_copy(update={"file": source.name})
-        scene = scene.model_copy(update={"target": target})
+    for source in sources:
+        write_atomic(file.with_name(source.name), source.read_bytes())
+    scene = scene.model_copy(update={"target": scene.target.by_name()})
     write_atomic(file, scene_text(scene))
     console.print(f"{file}: edit it, then: beamopt optimize {file}", soft_wrap=True, markup=False)

@@ -9,13 +9,15 @@ from rich.style import Style
 from rich.text import Text
 
 from beamopt.cli.progress import console
-from beamopt.design import load_design
+from beamopt.design import Design, load_design
 from beamopt.errors import InputError
+from beamopt.folder import design_file
 from beamopt.plot.figures import design_figure, design_title
 from beamopt.plot.section import OUTSIDE, section_pixels
 from beamopt.plot.style import TYPE_COLOURS, save_figure
+from beamopt.scene import load_scene
 from beamopt.section.cross_section import CrossSection
-from beamopt.target import read_target
+from beamopt.target import Target, read_target
 
 __all__ = ["show_command"]
 
@@ -26,17 +28,12 @@ SYMBOLS = "·123 "
 
 def show_command(path: Path, out: Path | None) -> None:
     """Draw a design, or the best design of a run over its target."""
-    file = path / "best.json" if path.is_dir() else path
+    file = design_file(path)
     figure_path = out or Path(f"{path.resolve().stem}.png")
     if figure_path.suffix.lower() not in ENDINGS:
         raise InputError("--out", "", str(figure_path), f"must end in {', '.join(ENDINGS)}")
     design = load_design(file)
-    beside = file.parent / "target.csv"
-    target = None
-    if path.is_dir() and beside.exists():
-        straight = design.climb.model.straight_length is not None
-        length = design.actuator.length
-        target = read_target(beside, design.pressures, length, straight=straight).workspace
+    target = _target(path, design) if path.is_dir() else None
     figure = design_figure(design, target, design_title(design) or file.stem)
     save_figure(figure, figure_path)
     console.print(_terminal_picture(design.section))
@@ -45,6 +42,19 @@ def show_command(path: Path, out: Path | None) -> None:
         legend.append(f" ■ supply {supply}", style=colour)
     console.print(legend)
     console.print(f"figure: {figure_path}", soft_wrap=True, markup=False)
+
+
+def _target(run: Path, design: Design) -> Target | None:
+    """What a run was asked for, if it says so."""
+    table, scene = run / "target.csv", run / "scene.toml"
+    if scene.exists():
+        asked = load_scene(scene)
+        if asked.target.paths or asked.target.kind == "points":
+            return asked.load_target()
+    if not table.exists():
+        return None
+    straight = design.climb.model.straight_length is not None
+    return read_target(table, design.pressures, design.actuator.length, straight=straight)
 
 
 def _terminal_picture(section: CrossSection) -> Text:

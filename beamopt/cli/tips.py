@@ -15,6 +15,7 @@ from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError, NoEquilibriumError
+from beamopt.folder import design_file
 from beamopt.rod.ladder import Tips
 from beamopt.rod.status import RodStatus
 from beamopt.target import tips_csv
@@ -25,7 +26,7 @@ __all__ = ["tips_command"]
 
 def tips_command(path: Path, combinations: Sequence[str], as_csv: bool) -> None:
     """Print tips as a table for people or as CSV for programs."""
-    design = load_design(path / "best.json" if path.is_dir() else path)
+    design = load_design(design_file(path))
     pressures = _parsed(combinations) if combinations else pressure_grid(design.pressures)
     found = design.solve(pressures)
     has_tip = np.array([status is RodStatus.CONVERGED for status in found.status])

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
 
-from beamopt.evolve.mutation import MUTATIONS, mutate
-from beamopt.evolve.recombination import RECOMBINATIONS
-from beamopt.judge import Verdict
+from beamopt.evolve.improvement import Improvement
+from beamopt.evolve.variation import Variation
+from beamopt.judge import Status, Verdict
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.streams import Purpose, stream
@@ -22,6 +23,7 @@ class Stage(Enum):
     INITIAL = "initial"
     OFFSPRING = "offspring"
     MUTANTS = "mutants"
+    IMPROVED = "improved"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +41,9 @@ class Generation:
     index : 0 for the initial population.
     evaluations : sections judged so far.
     population : the individuals, after mutation.
-    best : the one with the lowest L in this population, the paper's metric.
-    best_ever : the one with the lowest L of all that were judged so far.
+    best : the one with the lowest L + R in this population; without rules the paper's metric.
+    best_ever : the one with the lowest L + R of all that were judged so far.
+    rejected : how many so far could not be judged or may not be made, by reason.
     """
 
     index: int
@@ -48,10 +51,14 @@ class Generation:
     population: tuple[Individual, ...]
     best: Individual
     best_ever: Individual
+    rejected: Mapping[Status, int] = field(default_factory=dict)
 
 
 class GeneticAlgorithm:
     """Recombination, selection on T, mutation; N_p individuals (paper, Genetic Algorithm).
+
+    With an improvement it is a memetic one: in every generation the share of individuals with the
+    lowest T that the scene asks for is refined a little, and keeps its place unless T fell.
 
     Deterministic: candidates follow from the scene's search settings and the verdicts told.
 
@@ -59,15 +66,18 @@ class GeneticAlgorithm:
             record = search.tell(judge(search.ask()))
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, improvement: Improvement | None = None) -> None:
         self._settings = scene.search
-        self._grid = scene.grid.build()
+        self._improvement = improvement
+        self._variation = Variation(scene)
+        self._rejected: Counter[Status] = Counter()
+        self.rules_set = scene.making.rules_set
         seed = scene.search.seed
         self._pending: list[FeaturePoints] = [
-            scene.random_points(stream(seed, Purpose.INITIAL, 0, index))
+            self._variation.initial(stream(seed, Purpose.INITIAL, 0, index))
             for index in range(scene.search.population)
         ]
-        self._mutated: list[int] = []
+        self._chosen: list[int] = []
         self._population: list[Individual] = []
         self._best_ever: Individual | None = None
         self.stage = Stage.INITIAL
@@ -86,8 +96,16 @@ class GeneticAlgorithm:
 
     @property
     def next_evaluations(self) -> int:
-        """Sections that the next generation will have judged."""
-        return 2 * self.pairs + self.mutants
+        """Sections that the next generation will have judged, at most."""
+        each = 0 if self._improvement is None else self._improvement.most_evaluations + 1
+        return 2 * self.pairs + self.mutants + each * self.improvements
+
+    @property
+    def improvements(self) -> int:
+        """Individuals refined a little in a generation."""
+        if self._improvement is None:
+            return 0
+        return round(self._settings.improved_share * self._settings.population)
 
     def ask(self) -> tuple[FeaturePoints, ...]:
         """The candidates to be judged now; asking again gives the same ones."""
@@ -108,18 +126,27 @@ class GeneticAlgorithm:
             raise ValueError(f"{len(verdicts)} verdicts for {len(self._pending)} candidates")
         judged = [Individual(p, v) for p, v in zip(self._pending, verdicts, strict=True)]
         self.evaluations += len(judged)
-        for individual in judged:
-            if self._best_ever is None or individual.verdict.L < self._best_ever.verdict.L:
-                self._best_ever = individual
+        for one in judged:
+            if one.verdict.status is not Status.JUDGED:
+                self._rejected[one.verdict.status] += 1
+            ever = self._best_ever
+            if ever is None or one.verdict.ruled_loss < ever.verdict.ruled_loss:
+                self._best_ever = one
         if self.stage is Stage.INITIAL:
             self._population = judged
         elif self.stage is Stage.OFFSPRING:
             self._select(judged)
-            if self._choose_mutants():
+            if self._choose_mutants() or self._improve():
+                return None
+        elif self.stage is Stage.MUTANTS:
+            for place, mutant in zip(self._chosen, judged, strict=True):
+                self._population[place] = mutant
+            if self._improve():
                 return None
         else:
-            for place, mutant in zip(self._mutated, judged, strict=True):
-                self._population[place] = mutant
+            for place, better in zip(self._chosen, judged, strict=True):
+                if better.verdict.T < self._population[place].verdict.T:
+                    self._population[place] = better
         return self._complete()
 
     def _select(self, offspring: list[Individual]) -> None:
@@ -132,23 +159,37 @@ class GeneticAlgorithm:
         settings = self._settings
         rng = stream(settings.seed, Purpose.CHOICE_OF_MUTANTS, self.generation)
         chosen = rng.choice(settings.population, self.mutants, replace=False)
-        self._mutated = [int(place) for place in chosen]
+        self._chosen = [int(place) for place in chosen]
         self._pending = [
-            mutate(
+            self._variation.mutant(
                 self._population[place].points,
-                MUTATIONS[settings.mutation],
-                settings.mutated_share,
                 stream(settings.seed, Purpose.MUTATION, self.generation, index),
             )
-            for index, place in enumerate(self._mutated)
+            for index, place in enumerate(self._chosen)
         ]
         self.stage = Stage.MUTANTS
         return bool(self._pending)
 
+    def _improve(self) -> bool:
+        """Ask for the best individuals, refined a little; False where there are none to make."""
+        if self._improvement is None or not self.improvements:
+            return False
+        order = sorted(range(len(self._population)), key=lambda k: self._population[k].verdict.T)
+        self._chosen = order[: self.improvements]
+        self._pending = []
+        for index, place in enumerate(self._chosen):
+            points = self._population[place].points
+            better, judged = self._improvement(points, self.generation, index)
+            self.evaluations += judged
+            self._pending.append(better)
+        self.stage = Stage.IMPROVED
+        return True
+
     def _complete(self) -> Generation:
-        best = min(self._population, key=lambda one: one.verdict.L)
-        ever = self._best_ever or best
-        record = Generation(self.generation, self.evaluations, tuple(self._population), best, ever)
+        best = min(self._population, key=lambda one: one.verdict.ruled_loss)
+        ever, population = self._best_ever or best, tuple(self._population)
+        rejected = dict(self._rejected)
+        record = Generation(self.generation, self.evaluations, population, best, ever, rejected)
         self.generation += 1
         self.stage = Stage.OFFSPRING
         self._pending = self._recombined()
@@ -156,7 +197,6 @@ class GeneticAlgorithm:
 
     def _recombined(self) -> list[FeaturePoints]:
         settings = self._settings
-        cross = RECOMBINATIONS[settings.recombination]
         offspring: list[FeaturePoints] = []
         for pair in range(self.pairs):
             rng = stream(settings.seed, Purpose.RECOMBINATION, self.generation, pair)
@@ -164,5 +204,5 @@ class GeneticAlgorithm:
                 self._population[int(k)].points
                 for k in rng.choice(settings.population, 2, replace=False)
             )
-            offspring += cross(a, b, self._grid, settings.swapped_share, rng)
+            offspring += self._variation.offspring(a, b, rng)
         return offspring

@@ -131,7 +131,7 @@ class Journal:
         record: dict[str, object] = {
             "generation": search.generation,
             "stage": search.stage.value,
-            "judged": [_entry(points, verdict) for points, verdict in judged],
+            "judged": [_entry(points, verdict, search.rules_set) for points, verdict in judged],
         }
         self._append(_line(record))
 
@@ -144,11 +144,11 @@ def _line(record: dict[str, object]) -> bytes:
     return (json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n").encode()
 
 
-def _entry(points: FeaturePoints, verdict: Verdict) -> list[object]:
-    """Digest, L and K; for what could not be judged null, null and the status."""
+def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:
+    """Digest, L and K, also R with rules; for what is not judged null, null and the status."""
     if verdict.status is not Status.JUDGED:
         return [points.digest, None, None, verdict.status.name]
-    return [points.digest, verdict.L, verdict.K]
+    return [points.digest, verdict.L, verdict.K] + ([verdict.R] if with_rules else [])
 
 
 def _decoded(line: str) -> object:
@@ -168,16 +168,25 @@ def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):
         return None
-    verdicts = [_verdict(entry, points) for points, entry in zip(asked, judged, strict=True)]
+    pairs, with_rules = zip(asked, judged, strict=True), search.rules_set
+    verdicts = [_verdict(entry, points, with_rules) for points, entry in pairs]
     known = [verdict for verdict in verdicts if verdict is not None]
     return known if len(known) == len(verdicts) else None
 
 
-def _verdict(entry: object, points: FeaturePoints) -> Verdict | None:
+def _verdict(entry: object, points: FeaturePoints, with_rules: bool) -> Verdict | None:
     """A verdict as `_entry` writes it; None for anything else."""
     match entry:
-        case [digest, float(L), float(K)] if digest == points.digest:
-            return Verdict(L, K) if 0 <= L < math.inf and 0 <= K < math.inf else None
+        case [digest, float(L), float(K)] if digest == points.digest and not with_rules:
+            return _judged(L, K, 0.0)
+        case [digest, float(L), float(K), float(R)] if digest == points.digest and with_rules:
+            return _judged(L, K, R)
         case [digest, None, None, str(name)] if digest == points.digest and name in FAILURES:
             return Verdict(math.inf, math.inf, Status[name])
     return None
+
+
+def _judged(L: float, K: float, R: float) -> Verdict | None:
+    """A verdict of losses that can be some."""
+    possible = all(0 <= loss < math.inf for loss in (L, K, R))
+    return Verdict(L, K, R=R) if possible else None

@@ -8,6 +8,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+from beamopt.evolve.improvement import Improvement
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason, why_stop
 from beamopt.judge import Judge, Status, judge_all
@@ -55,7 +56,8 @@ def run(
     InputError : the journal is not this search's.
     """
     started = asking = time.perf_counter()
-    search = GeneticAlgorithm(scene)
+    improvement = Improvement(judge, scene) if scene.search.improved_share > 0 else None
+    search = GeneticAlgorithm(scene, improvement)
     history: list[Generation] = []
 
     def told(record: Generation | None, seconds: float) -> StopReason | None:

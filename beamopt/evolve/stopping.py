@@ -31,7 +31,7 @@ def why_stop(
     seconds : time that judging anew has taken so far.
     """
     stop, last = scene.stop, history[-1]
-    if stop.loss is not None and stop.loss >= last.best_ever.verdict.L:
+    if stop.loss is not None and stop.loss >= last.best_ever.verdict.ruled_loss:
         return StopReason.LOSS
     if last.index >= scene.search.generations:
         return StopReason.GENERATIONS
@@ -40,8 +40,8 @@ def why_stop(
         if after > stop.evaluations:
             return StopReason.EVALUATIONS
     if stop.stall is not None and last.index >= stop.stall:
-        before = history[-1 - stop.stall].best_ever.verdict.L
-        if before <= last.best_ever.verdict.L:
+        before = history[-1 - stop.stall].best_ever.verdict.ruled_loss
+        if before <= last.best_ever.verdict.ruled_loss:
             return StopReason.STALL
     if stop.seconds is not None and seconds > stop.seconds:
         return StopReason.SECONDS

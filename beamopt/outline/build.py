@@ -26,7 +26,7 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["SLACK", "build_outline"]
+__all__ = ["SLACK", "build_outline", "outline_moments"]
 
 SLACK = 0.02
 """mm; skins, walls and necks may be thinner than asked by this and twice the sagitta: chords of
@@ -40,6 +40,8 @@ def build_outline(
     source: FeaturePoints | Sequence[Shape],
     rules: SealRules,
     sagitta: float = 0.04,
+    *,
+    inspected: bool = True,
 ) -> Outline:
     """The section of feature points or of a drawing as polygons, sealed where `rules` are.
 
@@ -47,6 +49,7 @@ def build_outline(
     are, clipped to the ring, and `rules.wall` is only checked.
 
     sagitta : how far edges may be from the smooth outline [mm]; less where walls are thin.
+    inspected : whether skins, walls and necks of the polygons are measured.
 
     Raises
     ------
@@ -83,9 +86,17 @@ def build_outline(
     else:
         faults = [Fault(FaultKind.INVALID)]
     pieces = _pieces(coarse_ring, regions)
-    faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
+    if inspected:
+        faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
     faults += topology(pieces, regions)
     return Outline(pieces, _chambers(regions), worst_first(faults), moments)
+
+
+def outline_moments(
+    grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules
+) -> Moments:
+    """Moments of the outline alone, the same as `build_outline` gives, without measuring walls."""
+    return build_outline(grid, source, rules, inspected=False).moments
 
 
 def _smooth(

@@ -19,8 +19,10 @@ from beamopt.plot.style import (
     new_figure,
     styled,
 )
+from beamopt.plot.targets import answered, asked, following
 from beamopt.plot.workspace import draw_diagonal, draw_down, draw_from_above, pressure_handles
 from beamopt.rod.pressure_tree import parents_on_grid
+from beamopt.target import Target
 from beamopt.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -36,21 +38,29 @@ def design_title(design: Design) -> str:
 
 
 @styled
-def design_figure(design: Design, target: Workspace | None = None, title: str = "") -> Figure:
+def design_figure(
+    design: Design, target: Workspace | Target | None = None, title: str = ""
+) -> Figure:
     """A section beside its workspace, from above and diagonally, over the target if there is one.
 
-    Backbones are coloured by pressure: supply 1 red, 2 green, 3 blue.
+    Backbones are coloured by pressure: supply 1 red, 2 green, 3 blue. Beside a target without a
+    workspace stand the design's tips at the target's pressures; trajectories with what is reached.
     """
+    wanted = target if isinstance(target, Target) or target is None else Target.of_workspace(target)
     figure = new_figure(13.0, 5.6, below=0.1)
     left, middle = figure.add_subplot(131), figure.add_subplot(132)
     right = figure.add_subplot(133, projection="3d")
     sealed = design.seal.rules.sealed
     draw_section(left, design.section, "section", design.outline if sealed else None)
+    space, aimed, followed = answered(design, wanted), asked(wanted), following(design, wanted)
+    on_grid = isinstance(space, Workspace)
     lines = design.climb.model.backbones(
-        design.values, design.workspace.pressures, parents_on_grid()
+        design.values, space.pressures, parents_on_grid() if on_grid else None
     )
-    draw_from_above(middle, design.workspace, target, lines)
-    draw_diagonal(right, design.workspace, target, lines)
+    draw_from_above(middle, space, aimed, lines, followed)
+    draw_diagonal(right, space, aimed, lines, followed)
+    if not on_grid or followed is not None:
+        middle.set_adjustable("datalim")  # tips may lie in a narrow strip
     if design.loads.weighs:
         draw_down(right, -design.loads.mount[2], lines.reshape(-1, 3))
     middle.legend(handles=[*middle.get_legend_handles_labels()[0], *pressure_handles()], **BELOW)

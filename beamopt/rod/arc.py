@@ -6,7 +6,14 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 
-__all__ = ["arc_centreline", "arc_tip_jacobian", "arc_tip_jacobian_by_response", "arc_tips"]
+__all__ = [
+    "arc_centreline",
+    "arc_tip_direction_jacobian",
+    "arc_tip_directions",
+    "arc_tip_jacobian",
+    "arc_tip_jacobian_by_response",
+    "arc_tips",
+]
 
 SERIES_BELOW = 0.05
 """θ² below which d(sin θ/θ)/dθ² and its sibling are summed as series (error below 1e-16)."""
@@ -72,6 +79,41 @@ def arc_tip_jacobian_by_response(
     ∂tip/∂strain_i · P_j [mm·kPa for i = 0, mm²·kPa for i = 1, 2].
     """
     return np.asarray(np.einsum("...nxi,nj->...nxij", arc_tip_jacobian(strains, length), pressures))
+
+
+def arc_tip_directions(strains: FloatArray, length: float) -> FloatArray:
+    """(…, 3) unit tangent R(H) e3 = sin θ d + cos θ e3 of the axis at the tip.
+
+    θ = |κ| H and d = κ × e3/|κ|, the bending direction; strains (…, 3) as for `arc_tips`.
+    """
+    _, k1, k2 = np.moveaxis(strains, -1, 0)
+    angle = np.hypot(k1, k2) * length
+    sideways = length * np.sinc(angle / np.pi)  # sin θ/|κ|
+    return np.stack([sideways * k2, sideways * (0 - k1), np.cos(angle)], axis=-1)
+
+
+def arc_tip_direction_jacobian(strains: FloatArray, length: float) -> FloatArray:
+    """Derivatives (…, 3, 3) of the tip's direction by the strains (ε, κ1, κ2) [1; mm].
+
+    With g = sin θ/θ and e = κ/|κ|: ∂(g κ_i)/∂κ_j = g δ_ij + (cos θ − g) e_i e_j and
+    ∂cos θ/∂κ_j = −H² g κ_j. Nothing is divided by θ but in g and e, so that no series is needed:
+    cos θ − g goes to zero where e means nothing.
+    """
+    _, k1, k2 = np.moveaxis(strains, -1, 0)
+    size = np.hypot(k1, k2)
+    angle = size * length
+    g = np.sinc(angle / np.pi)
+    safe = np.where(size > 0, size, 1.0)
+    e1, e2, change = k1 / safe, k2 / safe, np.cos(angle) - g
+    result = np.zeros((*strains.shape, 3))
+    # rows: x, y, z; direction = [H g κ2, −H g κ1, cos θ]
+    result[..., 0, 1] = length * change * e2 * e1
+    result[..., 0, 2] = length * (g + change * e2 * e2)
+    result[..., 1, 1] = -length * (g + change * e1 * e1)
+    result[..., 1, 2] = -length * change * e1 * e2
+    result[..., 2, 1] = -length * length * g * k1
+    result[..., 2, 2] = -length * length * g * k2
+    return result
 
 
 def _slopes(

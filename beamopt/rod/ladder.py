@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
-from beamopt.rod.arc import arc_centreline, arc_tips
+from beamopt.rod.arc import arc_centreline, arc_tip_directions, arc_tips
 from beamopt.rod.chain import chain_centrelines, chain_tips
 from beamopt.rod.equilibrium import MethodName, solve_rod
 from beamopt.rod.law import cross, poissons_ratio, section_law
@@ -86,10 +86,14 @@ class Loads:
 
 @dataclass(frozen=True, eq=False)
 class Tips:
-    """positions : (n, 3) tips [mm], NaN where `status` says that there is none."""
+    """positions : (n, 3) tips [mm]; directions : (n, 3) unit tangents R e3 of the axis there.
+
+    NaN where `status` says that there is none; no directions where nobody asked.
+    """
 
     positions: FloatArray
     status: tuple[RodStatus, ...]
+    directions: FloatArray | None = None
 
     @property
     def failure(self) -> RodStatus | None:
@@ -164,14 +168,18 @@ class RodModel:
         parents : (n, 3) see `StrainModes`. all_or_none : see `solve_rod`.
         """
         if self.rung is Rung.ARC:
-            return _all_found(self.arcs(section.moments, pressures))
+            strains = self.arc_strains(section.moments, pressures)
+            ways = arc_tip_directions(strains, self.length)
+            return _all_found(arc_tips(strains, self.length), ways)
         rod, rest = self.rod(section), self.rest(section, pressures)
         if self.rung is Rung.CHAIN:
-            return _all_found(self.centroids(section, *chain_tips(rod, rest)))
+            position, rotation = chain_tips(rod, rest)
+            return _all_found(self.centroids(section, position, rotation), rotation[..., 2])
         found = solve_rod(
             rod, rest, self.tolerance, parents, all_or_none=all_or_none, method=self.method
         )
-        return Tips(self.centroids(section, found.tips, found.rotations), found.status)
+        tips = self.centroids(section, found.tips, found.rotations)
+        return Tips(tips, found.status, found.rotations[..., 2])
 
     def centroids(
         self, section: SectionValues, position: FloatArray, rotation: FloatArray
@@ -184,9 +192,10 @@ class RodModel:
 
     def arcs(self, moments: Moments, pressures: FloatArray) -> FloatArray:
         """(…, n, 3) tips of the rods of one section or a batch (…), all of them arcs."""
-        return arc_tips(self._arc_strains(moments, pressures), self.length)
+        return arc_tips(self.arc_strains(moments, pressures), self.length)
 
-    def _arc_strains(self, moments: Moments, pressures: FloatArray) -> FloatArray:
+    def arc_strains(self, moments: Moments, pressures: FloatArray) -> FloatArray:
+        """(…, n, 3) strains ε, κ1, κ2 of these arcs [1, 1/mm, 1/mm]."""
         strains = self.response_of(moments).strains(pressures)
         if np.any(self.curvature):
             strains = strains + np.array([0.0, self.curvature[0], self.curvature[1]])
@@ -197,7 +206,7 @@ class RodModel:
     ) -> FloatArray:
         """(n, m, 3) the axis from base to tip [mm] at the pressures (n, 3) [kPa]; NaN without."""
         if self.rung is Rung.ARC:
-            strains = self._arc_strains(section.moments, pressures)
+            strains = self.arc_strains(section.moments, pressures)
             return arc_centreline(strains, np.linspace(0, self.length, DRAWN))
         rod, rest = self.rod(section), self.rest(section, pressures)
         if self.rung is Rung.CHAIN:
@@ -255,5 +264,5 @@ class RodModel:
         return [centroid - centroids[0] for centroid in centroids]
 
 
-def _all_found(positions: FloatArray) -> Tips:
-    return Tips(positions, (RodStatus.CONVERGED,) * len(positions))
+def _all_found(positions: FloatArray, directions: FloatArray) -> Tips:
+    return Tips(positions, (RodStatus.CONVERGED,) * len(positions), directions)

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled
 from beamopt.section.grid import PolarGrid
+from beamopt.section.runs import Runs, runs_of_row
 
-__all__ = ["Moments", "moments_of", "sum_moments"]
+__all__ = ["Moments", "moments_of", "sum_and_find_runs", "sum_moments"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,26 +85,34 @@ def moments_of(grid: PolarGrid, labels: LabelArray) -> Moments:
 
 @compiled
 def sum_moments(
-    labels: NDArray[np.uint8], radial: FloatArray, angular: FloatArray, raw: FloatArray
+    labels: LabelArray | IndexArray, radial: FloatArray, angular: FloatArray, raw: FloatArray
 ) -> None:
-    """Add each element's moments to `raw` (4, 6).
+    """Add each element's moments to `raw` (4, 6)."""
+    runs = Runs(np.empty(labels.size, dtype=np.int64), np.zeros(len(labels) + 1, dtype=np.int64))
+    sum_and_find_runs(labels, runs, radial, angular, raw)
+
+
+@compiled
+def sum_and_find_runs(
+    labels: LabelArray | IndexArray,
+    runs: Runs,
+    radial: FloatArray,
+    angular: FloatArray,
+    raw: FloatArray,
+) -> None:
+    """Add each element's moments to `raw` (4, 6), and write the section's runs to `runs`.
 
     An element's integrals are a radial one times an angular one, and the angular ones telescope
-    along a run of equal elements: only the runs' ends count, and they are found without branches.
+    along a run of equal elements: only the runs' ends count.
     """
-    rows, columns = labels.shape
-    ends = np.empty(columns, dtype=np.int64)
-    for i in range(rows):
-        row = labels[i]
-        after = row[1:]
-        runs = 0
-        for j in range(columns - 1):
-            ends[runs] = j + 1
-            runs += row[j] != after[j]
-        ends[runs] = columns
+    n = 0
+    for i in range(labels.shape[0]):
+        row, begin = labels[i], n
+        n = runs_of_row(row, runs.ends, begin)
+        runs.begin[i] = begin
         r1, r2, r3 = radial[0, i], radial[1, i], radial[2, i]
         first = 0
-        for end in ends[: runs + 1]:
+        for end in runs.ends[begin:n]:
             sums, b, a = raw[row[first]], angular[end], angular[first]
             sums[0] += r1 * (b[0] - a[0])
             sums[1] += r2 * (b[1] - a[1])
@@ -112,3 +121,4 @@ def sum_moments(
             sums[4] += r3 * (b[4] - a[4])
             sums[5] += r3 * (b[5] - a[5])
             first = end
+    runs.begin[labels.shape[0]] = n

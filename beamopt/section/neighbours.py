@@ -14,7 +14,7 @@ from beamopt.compiled import compiled
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 
-__all__ = ["count_edges", "neighbour_edges", "neighbour_ratio"]
+__all__ = ["count_edges", "neighbour_edges", "neighbour_ratio", "neighbours_of"]
 
 
 def neighbour_edges(points: FeaturePoints) -> IndexArray:
@@ -39,3 +39,23 @@ def count_edges(edges: IndexArray, types: NDArray[np.uint8]) -> tuple[int, int]:
     for e in range(edges.shape[0]):
         different += types[edges[e, 0]] != types[edges[e, 1]]
     return different, edges.shape[0] - different
+
+
+@compiled
+def neighbours_of(edges: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
+    """Neighbours of point k: `neighbours[begin[k]:begin[k + 1]]`."""
+    begin = np.zeros(count + 1, dtype=np.int64)
+    for e in range(edges.shape[0]):
+        begin[edges[e, 0] + 1] += 1
+        begin[edges[e, 1] + 1] += 1
+    for k in range(count):
+        begin[k + 1] += begin[k]
+    at = begin[:-1].copy()
+    neighbours = np.empty(2 * edges.shape[0], dtype=np.int64)
+    for e in range(edges.shape[0]):
+        k, l = edges[e, 0], edges[e, 1]  # noqa: E741
+        neighbours[at[k]] = l
+        at[k] += 1
+        neighbours[at[l]] = k
+        at[l] += 1
+    return begin, neighbours

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled
+from beamopt.section.counting import Counts, counts_for, take_counts
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
-from beamopt.section.moments import Moments, sum_moments
+from beamopt.section.moments import Moments, sum_and_find_runs
 from beamopt.section.neighbours import count_edges, neighbour_ratio
 from beamopt.section.raster import Tiling, nearest_types, tiling
+from beamopt.section.runs import Runs, room_for_runs
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.section.seal_table import SealTable, Work, seal_table, work
 from beamopt.section.sealing import sealed_cells
+from beamopt.section.symmetry import Symmetry
 from beamopt.section.walls import add_walls, wall_steps
 
 __all__ = ["Phenotypes", "phenotypes"]
@@ -31,11 +34,15 @@ class Phenotypes:
     moments : Moments with one leading axis (n,).
     neighbour_ratio : (n,) edges between different types over edges between equal ones.
     labels : (n, radial, angular) types of elements, where they were asked for; else (1, …).
+    chambers : (n, 3) separate chambers of each supply, where they were asked for; else (0, 3).
+    asymmetry : (n,) share of the area that is not symmetric, where asked for; else (0,).
     """
 
     moments: Moments
     neighbour_ratio: FloatArray
     labels: LabelArray
+    chambers: IndexArray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    asymmetry: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def phenotypes(
@@ -44,29 +51,36 @@ def phenotypes(
     wall_elements: int,
     rules: SealRules = UNSEALED,
     keep_labels: bool = False,
+    count_chambers: bool = False,
+    symmetry: Symmetry | None = None,
 ) -> Phenotypes:
-    """Rasterise, wall, seal and measure every candidate; the same numbers as one by one."""
+    """Rasterise, wall, seal and measure every candidate; the same numbers as one by one.
+
+    keep_labels, count_chambers, symmetry : ask for labels, chambers and asymmetry.
+    """
     ends = np.cumsum([0] + [len(points) for points in candidates])
     raw = np.zeros((len(candidates), 4, 6))
     edges = np.zeros((len(candidates), 2))
     kept = np.zeros((len(candidates) if keep_labels else 1, *grid.shape), dtype=np.uint8)
+    counts = counts_for(grid, len(candidates), count_chambers, symmetry)
     if candidates:
         x, y, types = (
             np.concatenate([getattr(points, name) for points in candidates])
             for name in ("x", "y", "type")
         )
         steps, tiles = wall_steps(wall_elements), tiling(grid)
-        integrals = grid.radial_integrals, grid.angular_integrals
+        integrals, runs = (grid.radial_integrals, grid.angular_integrals), room_for_runs(grid)
         if rules == UNSEALED:
             ring = grid.is_full_ring
-            _measure(x, y, types, ends, tiles, steps, ring, *integrals, raw, edges, kept)
+            about = tiles, steps, ring, *integrals
+            _measure(x, y, types, ends, *about, raw, edges, kept, runs, counts)
         else:
             table = seal_table(grid, rules)
             space = work(grid, table)
-            _measure_sealed(
-                x, y, types, ends, tiles, steps, table, space, *integrals, raw, edges, kept
-            )
-    return Phenotypes(Moments(raw), neighbour_ratio(edges[:, 0], edges[:, 1]), kept)
+            about_seal = tiles, steps, table, space, *integrals
+            _measure_sealed(x, y, types, ends, *about_seal, raw, edges, kept, runs, counts)
+    ratios = neighbour_ratio(edges[:, 0], edges[:, 1])
+    return Phenotypes(Moments(raw), ratios, kept, counts.chambers, counts.asymmetry)
 
 
 @compiled
@@ -83,6 +97,8 @@ def _measure(
     raw: FloatArray,
     edges: FloatArray,
     kept: LabelArray,
+    runs: Runs,
+    counts: Counts,
 ) -> None:
     for k in range(raw.shape[0]):
         a, b = ends[k], ends[k + 1]
@@ -90,7 +106,8 @@ def _measure(
         labels[:] = 0
         nearest_types(x[a:b], y[a:b], types[a:b], tiles, labels)
         add_walls(labels, wall_steps, periodic)
-        sum_moments(labels, radial, angular, raw[k])
+        sum_and_find_runs(labels, runs, radial, angular, raw[k])
+        take_counts(labels, runs, periodic, k, counts)
         edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])
 
 
@@ -109,10 +126,13 @@ def _measure_sealed(
     raw: FloatArray,
     edges: FloatArray,
     kept: LabelArray,
+    runs: Runs,
+    counts: Counts,
 ) -> None:
     for k in range(raw.shape[0]):
         a, b = ends[k], ends[k + 1]
         labels = kept[k if kept.shape[0] > 1 else 0]
         sealed_cells(x[a:b], y[a:b], types[a:b], tiles, wall_steps, table, space, labels)
-        sum_moments(labels, radial, angular, raw[k])
+        sum_and_find_runs(labels, runs, radial, angular, raw[k])
+        take_counts(labels, runs, table.periodic, k, counts)
         edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])

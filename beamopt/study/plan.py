@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from beamopt.bundled import bundled_scenes
 from beamopt.errors import InputError
 from beamopt.scene import Scene, load_scene
 
@@ -19,7 +21,7 @@ COMBINATIONS = {
 }
 
 
-DECIDED = ("search.seed", "search.recombination", "search.mutation")
+DECIDED = ("search.seed", "search.recombination", "search.mutation", "refine.finish")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,7 @@ class Run:
     iteration: int
     seed: int
     overrides: tuple[str, ...] = ()
+    refine: bool = False
 
     @property
     def name(self) -> str:
@@ -46,7 +49,12 @@ class Run:
         """The scene that this run searches."""
         recombination, mutation = COMBINATIONS[self.combination]
         methods = (f'search.recombination="{recombination}"', f'search.mutation="{mutation}"')
-        return load_scene(self.target, [*self.overrides, *methods, f"search.seed={self.seed}"])
+        decided = (
+            *methods,
+            f"search.seed={self.seed}",
+            f"refine.finish={str(self.refine).lower()}",
+        )
+        return load_scene(self.target, [*self.overrides, *decided])
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,27 +64,53 @@ class Plan:
     iterations : runs of each target and combination.
     seed : seed of the first iteration; the others count up from it.
     overrides : keys replaced in every scene.
+    targets : the bundled scenes to search.
+    refine : whether every search ends by refining its best design.
 
     Raises
     ------
-    InputError : an override of what the study itself decides.
+    InputError : an override of what the study itself decides, or a target that is no bundled scene.
     """
 
     iterations: int = 4
     seed: int = 0
     overrides: tuple[str, ...] = ()
+    targets: tuple[str, ...] = TARGETS
+    refine: bool = True
 
     def __post_init__(self) -> None:
         for override in self.overrides:
             key = override.partition("=")[0].strip()
             if key in DECIDED:
                 raise InputError("--set", "", override, f"a study decides {key} for every search")
+        for target in self.targets:
+            if target not in bundled_scenes():
+                said = f"one of {', '.join(bundled_scenes())}"
+                raise InputError("--target", "", target, said)
+        if len(set(self.targets)) < len(self.targets) or not self.targets:
+            raise InputError("--target", "", " ".join(self.targets), "one or more, once each")
 
     def runs(self) -> Sequence[Run]:
         """Every run, in the order of the table."""
         return [
-            Run(target, combination, iteration, self.seed + iteration - 1, self.overrides)
-            for target in TARGETS
+            Run(
+                target,
+                combination,
+                iteration,
+                self.seed + iteration - 1,
+                self.overrides,
+                self.refine,
+            )
+            for target in self.targets
             for combination in COMBINATIONS
             for iteration in range(1, self.iterations + 1)
         ]
+
+    @property
+    def command(self) -> str:
+        """What makes this study, but for `--out`."""
+        words = ["beamopt", "study", "--iterations", str(self.iterations), "--seed", str(self.seed)]
+        if self.targets != TARGETS:
+            words += [word for target in self.targets for word in ("--target", target)]
+        words += [] if self.refine else ["--no-refine"]
+        return shlex.join([*words, *(f"--set={override}" for override in self.overrides)])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,27 +16,34 @@ from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
 from beamopt.scene import load_scene
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
+from beamopt.study.refined import write_refined
 from beamopt.study.table import (
-    TITLES,
     Outcome,
     comparison_markdown,
     table_csv,
     table_markdown,
+    targets_of,
+    title,
 )
 
-__all__ = ["NAMES", "write_report"]
+__all__ = ["names", "write_report"]
 
-NAMES = (
-    "table.csv",
-    "table.md",
-    "convergence.csv",
-    "best_ever.csv",
-    *(f"{figure}.{ending}" for figure in ("convergence", *TARGETS) for ending in ("svg", "png")),
-    *(f"{target}-{which}.json" for target in TARGETS for which in ("best", "worst")),
-    "timing.csv",
-    "provenance.json",
-)
-"""Every file that `write_report` writes."""
+
+def names(plan: Plan) -> tuple[str, ...]:
+    """Every file that `write_report` writes."""
+    figures = ("convergence", *plan.targets, *(("refined",) if plan.refine else ()))
+    return (
+        "table.csv",
+        "table.md",
+        "convergence.csv",
+        "best_ever.csv",
+        *(("refined.csv", "refined.md", "bounds.csv") if plan.refine else ()),
+        *(f"{figure}.{ending}" for figure in figures for ending in ("svg", "png")),
+        *(f"{target}-{which}.json" for target in plan.targets for which in ("best", "worst")),
+        *(f"{target}-refined.json" for target in plan.targets if plan.refine),
+        "timing.csv",
+        "provenance.json",
+    )
 
 
 def write_report(
@@ -55,15 +61,22 @@ def write_report(
     spreads = _spreads(outcomes)
     write_atomic(folder / "convergence.csv", _convergence_csv(spreads))
     write_atomic(folder / "best_ever.csv", _best_ever_csv(outcomes))
-    cases = {target: _best_and_worst(folder, outcomes, target) for target in TARGETS}
+    cases = {target: _best_and_worst(folder, outcomes, target) for target in plan.targets}
     if figures:
-        drawn = losses_figure(spreads, TITLES)
+        drawn = losses_figure(spreads, {target: title(target) for target in plan.targets})
         save_figure(drawn, folder / "convergence.svg", folder / "convergence.png")
         for target, designs in cases.items():
             drawn = case_figure(load_scene(target, plan.overrides).load_target(), designs)
             save_figure(drawn, folder / f"{target}.svg", folder / f"{target}.png")
+    if plan.refine:
+        write_refined(folder, outcomes, plan, figures=figures)
     rows = [("study", seconds, "s"), ("workers", workers, "1")]
     rows += [(one.run.name, one.seconds, "s") for one in outcomes]
+    rows += [
+        (f"{one.run.name}-refined", one.refined.seconds, "s")
+        for one in outcomes
+        if one.refined is not None
+    ]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", rows))
     write_atomic(folder / "provenance.json", json_text({"seed": plan.seed, **provenance()}))
 
@@ -91,7 +104,7 @@ def _best_and_worst(
 def _spreads(outcomes: Sequence[Outcome]) -> dict[str, dict[str, FloatArray]]:
     """For each target and combination (3, generations + 1): min, mean, max over iterations."""
     spreads: dict[str, dict[str, FloatArray]] = {}
-    for target in TARGETS:
+    for target in targets_of(outcomes):
         for combination in COMBINATIONS:
             lines = [
                 one.lowest
@@ -125,16 +138,19 @@ def _best_ever_csv(outcomes: Sequence[Outcome]) -> str:
 
 
 def _markdown(outcomes: Sequence[Outcome], plan: Plan) -> str:
-    command = f"beamopt study --iterations {plan.iterations} --seed {plan.seed}"
-    for override in plan.overrides:
-        command += f" --set {shlex.quote(override)}"
     return f"""# Loss L of the best individual at the end of each search [mm²]
 
 Lowest L in the last population, by target, combination of methods and iteration: fixed (F) or
 range (R) recombination with direct (D) or weighted (W) mutation. Bold is the lowest of a target,
-italics the highest. Made by `{command} --out DIR`.
+italics the highest. Made by `{plan.command} --out DIR`.
 
-{table_markdown(outcomes)}
+{table_markdown(outcomes)}{_beside_the_paper(outcomes, plan)}"""
+
+
+def _beside_the_paper(outcomes: Sequence[Outcome], plan: Plan) -> str:
+    if plan.targets != TARGETS:
+        return ""
+    return f"""
 ## Beside the paper
 
 Over all runs of a target. The paper's three targets are not published and ours are re-created in

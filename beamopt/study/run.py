@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
@@ -16,10 +17,12 @@ from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
-from beamopt.study.plan import Plan, Run
+from beamopt.refinement import Refinement
+from beamopt.scene import Scene
+from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import processes
-from beamopt.study.report import NAMES, write_report
-from beamopt.study.table import Outcome
+from beamopt.study.report import names, write_report
+from beamopt.study.table import Outcome, RefinedOutcome
 
 __all__ = ["run_study"]
 
@@ -31,6 +34,8 @@ class StudyFile(Model):
     seed: Count = quantity(..., "seed of the first iteration", low=0)
     overrides: list[str] = quantity(..., "keys replaced in every scene")
     iterations: Count = quantity(..., "runs of each target and combination", low=1)
+    targets: list[str] = quantity(list(TARGETS), "bundled scenes that are searched")
+    refine: bool = quantity(False, "whether every search ends by refining its best design")
 
 
 def run_study(
@@ -91,7 +96,15 @@ def run_one(run: Run, folder: Path) -> Outcome:
         result.evaluations,
         tuple(record.best.verdict.L for record in result.history),
         result.seconds,
+        None if result.refinement is None else _refined(result.refinement, result.scene),
     )
+
+
+def _refined(found: Refinement, scene: Scene) -> RefinedOutcome:
+    before, after = found.refined.before, found.refined.after
+    weight = scene.search.neighbour_weight or math.inf
+    ratios = before.K / weight, after.K / weight
+    return RefinedOutcome(before.L, after.L, *ratios, found.refined.evaluations, found.seconds)
 
 
 def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outcome]:
@@ -107,18 +120,24 @@ def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outco
 
 def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
     """Make the folder, or check that the study in it is the one asked for."""
-    asked = StudyFile(seed=plan.seed, overrides=list(plan.overrides), iterations=plan.iterations)
+    asked = StudyFile(
+        seed=plan.seed,
+        overrides=list(plan.overrides),
+        iterations=plan.iterations,
+        targets=list(plan.targets),
+        refine=plan.refine,
+    )
     there = folder / "study.json"
     claim_folder(folder, there.name, resume=resume)
     if there.exists():
         _check_same(there, asked)
-    clear_leftovers(folder, (there.name, *NAMES))
+    clear_leftovers(folder, (there.name, *names(plan)))
     write_atomic(there, json_text(asked.model_dump(by_alias=True)))
 
 
 def _check_same(there: Path, asked: StudyFile) -> None:
     old = parse(StudyFile, read_json(there), there)
-    for key in ("seed", "overrides"):
+    for key in ("seed", "overrides", "targets", "refine"):
         before, now = getattr(old, key), getattr(asked, key)
         if before != now:
             raise InputError(there, key, before, f"the study there; now asked for: {now}")

@@ -9,9 +9,18 @@ import numpy as np
 
 from beamopt.files import csv_text
 from beamopt.judge import Verdict
-from beamopt.study.plan import COMBINATIONS, TARGETS, Run
+from beamopt.study.plan import COMBINATIONS, Run
 
-__all__ = ["PAPER", "Outcome", "comparison_markdown", "table_csv", "table_markdown"]
+__all__ = [
+    "PAPER",
+    "Outcome",
+    "RefinedOutcome",
+    "comparison_markdown",
+    "table_csv",
+    "table_markdown",
+    "targets_of",
+    "title",
+]
 
 PAPER = {
     "random-section": {"Best": 19.49, "Mean": 81.59, "Worst": 152.52},
@@ -25,6 +34,22 @@ TITLES = {
     "hand-drawn-section": "Specific geometry",
     "hand-drawn-workspace": "Without geometry",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class RefinedOutcome:
+    """What refining a run's best design came to.
+
+    L_before, L : of the design that was refined, and of what came out [mm²]; of the outline where
+    it is sealed. ratio_before, ratio : their neighbour ratios.
+    """
+
+    L_before: float
+    L: float
+    ratio_before: float
+    ratio: float
+    evaluations: int
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +67,7 @@ class Outcome:
     evaluations: int
     lowest: tuple[float, ...]
     seconds: float
+    refined: RefinedOutcome | None = None
 
 
 SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {
@@ -51,13 +77,23 @@ SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {
 }
 
 
+def targets_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
+    """The targets of a study, in its order."""
+    return tuple(dict.fromkeys(one.run.target for one in outcomes))
+
+
+def title(target: str) -> str:
+    """A target's title: the paper's where it has one."""
+    return TITLES.get(target, target)
+
+
 def table_csv(outcomes: Sequence[Outcome]) -> str:
     """`target,combination,iteration,L,K,T,evaluations`, iterations then Best, Mean, Worst of L.
 
     K and T of the Best and Worst rows belong to that run; those of the Mean row are means.
     """
     rows: list[tuple[object, ...]] = []
-    for target in TARGETS:
+    for target in targets_of(outcomes):
         for combination in COMBINATIONS:
             mine = _of(outcomes, target, combination)
             rows += [(target, combination, one.run.iteration, *_losses(one)) for one in mine]
@@ -74,9 +110,11 @@ def table_markdown(outcomes: Sequence[Outcome]) -> str:
 
     The lowest Best, Mean and Worst of each target are bold, the highest in italics.
     """
-    columns = [(target, combination) for target in TARGETS for combination in COMBINATIONS]
+    columns = [
+        (target, combination) for target in targets_of(outcomes) for combination in COMBINATIONS
+    ]
     losses = {c: [one.final.L for one in _of(outcomes, *c)] for c in columns}
-    head = ["It."] + [f"{TITLES[target]} {combination}" for target, combination in columns]
+    head = ["It."] + [f"{title(target)} {combination}" for target, combination in columns]
     lines = [_row(head), _row(["---"] + ["---:"] * len(columns))]
     lines += [
         _row([str(k + 1)] + [f"{losses[c][k]:.2f}" for c in columns])
@@ -92,13 +130,13 @@ def comparison_markdown(outcomes: Sequence[Outcome]) -> str:
     """L over all runs of each target, beside the paper's."""
     lines = [_row(["Target", "Runs", *(f"{name}, here / paper" for name in SUMMARIES)])]
     lines.append(_row(["---", "---:", *["---:"] * len(SUMMARIES)]))
-    for target in TARGETS:
+    for target in (target for target in targets_of(outcomes) if target in PAPER):
         losses = [one.final.L for one in outcomes if one.run.target == target]
         pairs = [
             f"{summarise(losses):.2f} / {PAPER[target][name]:.2f}"
             for name, summarise in SUMMARIES.items()
         ]
-        lines.append(_row([TITLES[target], str(len(losses)), *pairs]))
+        lines.append(_row([title(target), str(len(losses)), *pairs]))
     return "\n".join(lines) + "\n"
 
 

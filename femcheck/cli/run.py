@@ -13,6 +13,7 @@ from rich.markup import escape
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
+from beamopt.folder import design_file
 from beamopt.provenance import thread_settings
 from femcheck.check.folder import CheckFolder
 from femcheck.check.options import CheckOptions
@@ -108,7 +109,7 @@ def _subjects(request: RunRequest) -> list[Subject]:
     """All designs, read before anything is computed."""
     subjects = []
     for path in request.designs:
-        file = path / "best.json" if path.is_dir() else path
+        file = design_file(path)
         design = load_design(file)
         name = name_of(path, design)
         subjects.append(subject_of(file, name, design, request.seal, request.slenderness))

@@ -10,6 +10,7 @@ import numpy as np
 from beamopt.bundled import bundled_scenes
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
+from beamopt.folder import design_file
 from beamopt.scene import Scene, load_scene
 
 __all__ = ["design_of_scene", "name_of", "named_design"]
@@ -28,7 +29,7 @@ def named_design(source: str) -> tuple[str, Design]:
     if source in bundled_scenes() or path.suffix == ".toml":
         scene = load_scene(source)
         return scene.name, design_of_scene(scene)
-    file = path / "best.json" if path.is_dir() else path
+    file = design_file(path)
     if not file.exists():
         scenes = ", ".join(bundled_scenes())
         said = f"no such design; a design file, a run folder, a scene, or one of: {scenes}"

@@ -15,6 +15,7 @@ import numpy as np
 from beamopt.bundled import bundled_scenes
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
+from beamopt.folder import design_file
 from beamopt.scene import load_scene
 from femcheck.check.subject import sealed_copy
 from femcheck.models.named import name_of
@@ -112,7 +113,7 @@ def find_design(given: str, meshes: Path) -> HeldDesign:
     if not path.exists():
         allowed = f"no such design; a file, a run folder, or one of: {', '.join(BUNDLED)}"
         raise InputError(given, "", None, allowed)
-    file = path / "best.json" if path.is_dir() else path
+    file = design_file(path)
     design = load_design(file)
     name = name_of(path, design)
     return HeldDesign(name, design, file, meshes / f"{name}.msh")

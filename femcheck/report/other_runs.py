@@ -12,6 +12,8 @@ from femcheck.report.saved_figure import SavedFigure, read_figures
 
 __all__ = ["FigureRun", "SearchRun", "read_figure_run", "read_search_run"]
 
+OF_PEOPLE = ("target-source", "target-path")
+
 
 @dataclass(frozen=True, eq=False)
 class SearchRun:
@@ -101,4 +103,6 @@ def read_figure_run(folder: Path) -> FigureRun:
 
 
 def _tables(folder: Path) -> tuple[Table, ...]:
-    return tuple(read_table(file) for file in sorted(folder.glob("*.csv")))
+    """Its tables but for those that a person wrote, which may hold comments and gaps."""
+    files = sorted(folder.glob("*.csv"))
+    return tuple(read_table(file) for file in files if not file.name.startswith(OF_PEOPLE))

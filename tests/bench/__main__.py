@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from tests.bench import evaluation, rods, solid, study
+from tests.bench import evaluation, rods, search, solid, study
 from tests.bench.measured import report
 
 BENCHES = {
@@ -12,6 +12,7 @@ BENCHES = {
     "study": study.measure,
     "solid": solid.measure,
     "rods": rods.measure,
+    "search": search.measure,
 }
 
 

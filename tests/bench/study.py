@@ -36,5 +36,5 @@ def measure() -> Iterator[Measured]:
         yield Measured("beamopt optimize, figures included", whole, "s")
         for workers in (1, 2):
             out = str(Path(root) / f"study-{workers}")
-            took = seconds("study", "--workers", str(workers), "--out", out)
+            took = seconds("study", "--no-refine", "--workers", str(workers), "--out", out)
             yield Measured(f"beamopt study, 48 runs, {workers} workers", took, "s")

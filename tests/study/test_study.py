@@ -10,12 +10,16 @@ from beamopt.errors import InputError
 from beamopt.judge import Judge, Status, Verdict
 from beamopt.optimisation import optimize
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
-from beamopt.study.report import NAMES
+from beamopt.study.report import names
 from beamopt.study.run import run_study
 from beamopt.study.table import PAPER, Outcome, comparison_markdown, table_csv, table_markdown
 from tests.validation.resume import content
 
-SMALL = Plan(iterations=2, overrides=("search.generations=1", "section.feature_points=12"))
+SMALL = Plan(
+    iterations=2,
+    overrides=("search.generations=1", "section.feature_points=12"),
+    refine=False,
+)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +78,7 @@ def test_best_and_worst_designs_have_their_losses(made) -> None:
 
 def test_more_iterations_go_on_and_anything_else_is_refused(made, tmp_path: Path) -> None:
     folder = tmp_path / "study"
-    one = Plan(1, SMALL.seed, SMALL.overrides)
+    one = Plan(1, SMALL.seed, SMALL.overrides, refine=False)
     run_study(folder, one, figures=False)
     run_study(folder, SMALL, resume=True, figures=False)
     drawn = {name for name in content(made[0]) if name.endswith((".svg", ".png"))}
@@ -84,7 +88,7 @@ def test_more_iterations_go_on_and_anything_else_is_refused(made, tmp_path: Path
     with pytest.raises(InputError, match="more iterations, not fewer"):
         run_study(folder, one, resume=True)
     with pytest.raises(InputError, match="seed = 0"):
-        run_study(folder, Plan(2, 1, SMALL.overrides), resume=True)
+        run_study(folder, Plan(2, 1, SMALL.overrides, refine=False), resume=True)
     with pytest.raises(InputError, match="--resume goes on"):
         run_study(folder, SMALL)
 
@@ -200,7 +204,12 @@ def test_processes_change_nothing(made, tmp_path: Path) -> None:
     """Through the command line, with two processes; a few seconds to start them."""
     settings = [f"--set={override}" for override in SMALL.overrides]
     out = str(tmp_path / "study")
-    assert run(["study", "--out", out, "--iterations", "2", "--workers", "2", *settings]) == 0
+    assert (
+        run(
+            ["study", "--out", out, "--iterations", "2", "--workers", "2", "--no-refine", *settings]
+        )
+        == 0
+    )
     assert content(tmp_path / "study") == content(made[0])
 
 
@@ -209,13 +218,13 @@ def test_a_study_writes_the_files_that_it_names_and_clears_what_a_kill_left(
 ) -> None:
     folder = made[0]
     held = {path.name for path in folder.iterdir()}
-    assert held == {*NAMES, "study.json", "runs"}
+    assert held == {*names(SMALL), "study.json", "runs"}
     left = tmp_path / "study"
-    run_study(left, Plan(1, SMALL.seed, SMALL.overrides), figures=False)
+    run_study(left, Plan(1, SMALL.seed, SMALL.overrides, refine=False), figures=False)
     (left / "best_ever.csv").unlink()
     for name in (".best_ever.csv.12.tmp", ".convergence.svg.12.tmp", ".study.json.7.tmp"):
         (left / name).write_text("half")
-    run_study(left, Plan(1, SMALL.seed, SMALL.overrides), resume=True, figures=False)
+    run_study(left, Plan(1, SMALL.seed, SMALL.overrides, refine=False), resume=True, figures=False)
     assert not list(left.glob(".*.tmp"))
 
 
@@ -229,3 +238,54 @@ def test_searches_of_nothing_but_air_have_no_design(tmp_path: Path) -> None:
     for one in outcomes:
         final = tmp_path / "study" / "runs" / one.run.name / "final.json"
         assert final.exists() == (one.final.status is Status.JUDGED)
+
+
+@pytest.fixture(scope="module")
+def refined(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Plan, list[Outcome]]:
+    """One target, sealed, every best design refined: what the columns are made of."""
+    folder = tmp_path_factory.mktemp("study") / "refined"
+    settings = ("search.generations=1", "section.feature_points=20", "refine.flips=2000")
+    sealed = ("refine.rounds=2", "seal.skin=1.0", "seal.wall=0.9", "grid.angular=120")
+    plan = Plan(1, 0, (*settings, *sealed), ("sealed-section",))
+    return folder, plan, run_study(folder, plan)
+
+
+def test_a_refined_study_has_bounds_losses_ratios_and_times(refined) -> None:
+    folder, plan, outcomes = refined
+    rows = list(csv.DictReader((folder / "refined.csv").read_text().splitlines()))
+    assert len(rows) == len(outcomes) == 4
+    for row, one in zip(rows, outcomes, strict=True):
+        found = one.refined
+        assert found is not None
+        assert row["target"] == one.run.target
+        assert float(row["refined_L"]) == found.L <= float(row["L"]) == found.L_before
+        assert float(row["refined_ratio"]) == found.ratio <= float(row["ratio"])
+        assert float(row["bound"]) <= found.L + 1e-9
+    times = dict(line.split(",")[:2] for line in (folder / "timing.csv").read_text().splitlines())
+    assert all(f"{one.run.name}-refined" in times for one in outcomes)
+    bounds = list(csv.DictReader((folder / "bounds.csv").read_text().splitlines()))
+    assert [row["target"] for row in bounds] == list(plan.targets)
+    for row in bounds:
+        assert float(row["proven_L"]) <= float(row["response_L"]) + 1e-9
+    held = {path.name for path in folder.iterdir()}
+    assert held == {*names(plan), "study.json", "runs"}
+    assert "Beside the paper" not in (folder / "table.md").read_text()
+    assert plan.command in (folder / "refined.md").read_text()
+
+
+def test_the_best_refined_design_of_a_target_has_its_loss(refined) -> None:
+    folder, _, outcomes = refined
+    scene = outcomes[0].run.scene()
+    mine = [one.refined for one in outcomes if one.run.target == "sealed-section"]
+    design = load_design(folder / "sealed-section-refined.json")
+    tips = scene.load_target().aim.tips
+    assert ((design.workspace.tips - tips) ** 2).sum() == pytest.approx(
+        min(one.L for one in mine if one is not None)
+    )
+
+
+def test_targets_of_a_study_are_bundled_scenes() -> None:
+    with pytest.raises(InputError, match="--target = 'mine'"):
+        Plan(targets=("mine",))
+    with pytest.raises(InputError, match="once each"):
+        Plan(targets=("random-section", "random-section"))

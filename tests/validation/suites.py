@@ -10,6 +10,7 @@ from tests.validation import (
     genotypes,
     material,
     published_solids,
+    refinement,
     regression,
     resume,
     rods,
@@ -31,4 +32,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "rods": rods.checks,
     "accuracy": accuracy.checks,
     "regression": regression.checks,
+    "refinement": refinement.checks,
 }

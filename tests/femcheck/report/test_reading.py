@@ -180,3 +180,16 @@ def test_searches_are_read(tmp_path: Path) -> None:
     change_json(folder.path / "summary.json", lambda data: data.pop("scene"))
     with pytest.raises(InputError, match=r"summary\.json: scene: must be given"):
         report_page([folder.path])
+
+
+@pytest.mark.parametrize("name", ["pairs", "spiral"])
+def test_searches_for_other_targets_are_read(name: str, tmp_path: Path) -> None:
+    """What was asked for stands beside the results with a person's comments in it."""
+    from beamopt.optimisation import optimize
+    from beamopt.scene import load_scene
+
+    scene = load_scene(name, ["search.generations=1", "search.population=4"])
+    optimize(scene, tmp_path / name, figures=False)
+    page = report_page([tmp_path / name])
+    assert f"{name}, seed 0" in page
+    assert ("paths.csv" in page) == (name == "spiral")

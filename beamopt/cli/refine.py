@@ -1,0 +1,107 @@
+"""`beamopt refine`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import typer
+
+from beamopt.bound.certificate import Certificate, quick_certificate
+from beamopt.cli.bound import gap_text
+from beamopt.cli.progress import console, progress_bar
+from beamopt.design import load_design
+from beamopt.errors import InputError
+from beamopt.folder import claim_folder
+from beamopt.optimisation import optimize
+from beamopt.refine.refine import RefineStatus, StageRecord
+from beamopt.refinement import Refinement, refine_design
+from beamopt.refinement_folder import write_refined_design
+from beamopt.scene import Scene, load_scene
+
+__all__ = ["refine_command", "refinement_lines", "stages_shown"]
+
+
+def refine_command(
+    subject: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
+) -> None:
+    """Refine the best design of a run, or a design for a scene; say what that came to."""
+    if subject.is_dir():
+        scene, found, bound = _refined_run(subject, scene_name, out, overrides)
+        folder = subject
+    else:
+        scene, found, bound, folder = _refined_file(subject, scene_name, out, overrides)
+    console.print(f"[bold]{scene.name}[/], seed {scene.search.seed}")
+    lines = [*refinement_lines(found, scene, bound), ("time", f"{found.seconds:.2f} s")]
+    for name, text in (*lines, ("files", f"{folder}/ (refined.json, refined.png, …)")):
+        console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
+    if found.refined.status is RefineStatus.NOT_JUDGED:
+        raise typer.Exit(1)
+
+
+def _refined_run(
+    run: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
+) -> tuple[Scene, Refinement, Certificate]:
+    for option, value in (("--scene", scene_name), ("--out", out)):
+        if value is not None:
+            said = "goes with a design file; a run folder has its scene, and gets the files"
+            raise InputError(option, "", str(value), said)
+    for override in overrides:
+        if not override.strip().startswith("refine."):
+            raise InputError("--set", "", override, "a key of [refine]; the rest is the run's")
+    if not (run / "scene.toml").exists():
+        raise InputError(run, "", None, "no run folder: it has no scene.toml")
+    scene = load_scene(run / "scene.toml", [*overrides, "refine.finish=true"])
+    with stages_shown(scene) as show:
+        result = optimize(scene, run, resume=True, refining=show)
+    if result.refinement is None:
+        raise InputError(run, "", None, f"no design to refine: {result.status.value}")
+    return scene, result.refinement, result.bound
+
+
+def _refined_file(
+    file: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
+) -> tuple[Scene, Refinement, Certificate, Path]:
+    design = load_design(file)
+    if scene_name is None:
+        said = "must name a scene: its target and rules are what the design is refined for"
+        raise InputError("--scene", "", None, said)
+    scene = load_scene(scene_name, overrides)
+    target = scene.load_target()
+    folder = out or Path(f"{file.stem}-refined")
+    claim_folder(folder, "refined.json", resume=False)
+    with stages_shown(scene) as show:
+        found = refine_design(design, scene, target, show)
+    write_refined_design(folder, scene, target, found)
+    return scene, found, quick_certificate(scene, target), folder
+
+
+@contextmanager
+def stages_shown(scene: Scene) -> Iterator[Callable[[StageRecord], None]]:
+    """A bar of a refinement's rounds; the most there can be."""
+    with progress_bar("rounds") as bar:
+        task = bar.add_task("refine", total=scene.refine.rounds, said="starting")
+
+        def show(record: StageRecord) -> None:
+            said = f"{record.stage.value}: L {record.verdict.L:.4g} mm²"
+            bar.update(task, completed=record.round, said=said)
+
+        yield show
+
+
+def refinement_lines(found: Refinement, scene: Scene, bound: Certificate) -> list[tuple[str, str]]:
+    """What a refinement came to, for people."""
+    refined, weight = found.refined, scene.search.neighbour_weight
+    if refined.status is not RefineStatus.REFINED:
+        return [("refined", refined.status.value)]
+    before, after = refined.before, refined.after
+    lines = [
+        ("refined L", f"{after.L:.6g} mm²   (before: {before.L:.6g})"),
+        ("bound", gap_text(bound, after.L)),
+    ]
+    if weight > 0:
+        said = f"{after.K / weight:.3f}   (before: {before.K / weight:.3f})"
+        lines.append(("ratio", said))
+    judged = f"{refined.evaluations} sections judged, {refined.flips:,} flips proposed"
+    return [*lines, ("refinement", judged)]

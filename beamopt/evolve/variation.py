@@ -1,0 +1,57 @@
+"""Where a search's candidates come from: at random, from two others, from one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamopt.evolve.mutation import MUTATIONS, mutate
+from beamopt.evolve.recombination import RECOMBINATIONS, Offspring
+from beamopt.scene import Scene
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.symmetry import Symmetry
+
+__all__ = ["Variation"]
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A scene's operators; where its rules ask for symmetric sections, all that they make is that.
+
+    Every draw is the caller's: one generator of random numbers a call.
+    """
+
+    scene: Scene
+
+    @cached_property
+    def symmetry(self) -> Symmetry | None:
+        """What every candidate is made equal to; None where nothing is asked for."""
+        return self.scene.making.repair(self.scene.grid.build())
+
+    def initial(self, rng: np.random.Generator) -> FeaturePoints:
+        """A random genotype; a symmetric one has its share of them in each part."""
+        symmetry, rules = self.symmetry, self.scene.section
+        if symmetry is None:
+            return self.scene.random_points(rng)
+        count = max(round(rules.feature_points / len(symmetry.images)), 1)
+        grid = self.scene.grid.build()
+        drawn = FeaturePoints.random(grid, count, rng, rules.material_probability)
+        return symmetry.symmetrised(symmetry.folded(drawn))
+
+    def offspring(self, a: FeaturePoints, b: FeaturePoints, rng: np.random.Generator) -> Offspring:
+        """Two from two; of symmetric parents what the parts are made from is recombined."""
+        settings, symmetry = self.scene.search, self.symmetry
+        cross = RECOMBINATIONS[settings.recombination]
+        about = self.scene.grid.build(), settings.swapped_share, rng
+        if symmetry is None:
+            return cross(a, b, *about)
+        one, other = cross(symmetry.generators(a), symmetry.generators(b), *about)
+        return symmetry.expanded(one), symmetry.expanded(other)
+
+    def mutant(self, points: FeaturePoints, rng: np.random.Generator) -> FeaturePoints:
+        """One from one; in a symmetric one the changes in the first part go for all."""
+        settings = self.scene.search
+        changed = mutate(points, MUTATIONS[settings.mutation], settings.mutated_share, rng)
+        return changed if self.symmetry is None else self.symmetry.symmetrised(changed)

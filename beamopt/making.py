@@ -1,0 +1,167 @@
+"""What can be made: rules for separate chambers, symmetry and mass, as scenes write them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from beamopt.arrays import FloatArray
+from beamopt.model import Model, Number, quantity
+from beamopt.section.grid import PolarGrid
+from beamopt.section.phenotype import Phenotypes
+from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
+
+__all__ = ["FREE", "Making", "MakingRules"]
+
+KILOGRAMS_PER_M3 = 1e-6  # g/mm³
+
+MostChambers = Annotated[int, Field(strict=True, ge=0, le=1000)]
+
+
+@dataclass(frozen=True, eq=False)
+class MakingRules:
+    """What a judge asks of a section beside its tips.
+
+    chambers : the most separate chambers of each supply; None for any number.
+    rejects : whether a section with more of them is rejected, instead of weighed.
+    chamber_weight : of each chamber too many [mm²].
+    symmetry, symmetry_weight : images, and the weight of the share that differs from them [mm²].
+    grams : of the actuator for each mm² of its section's material.
+    mass_weight : of each gram [mm²].
+    counts : whether chambers are counted even where no rule needs it.
+    """
+
+    chambers: tuple[int, int, int] | None = None
+    rejects: bool = True
+    chamber_weight: float = 0.0
+    symmetry: Symmetry | None = None
+    symmetry_weight: float = 0.0
+    grams: float = 0.0
+    mass_weight: float = 0.0
+    counts: bool = False
+
+    @property
+    def counts_chambers(self) -> bool:
+        """Whether chambers have to be counted."""
+        return self.counts or self.chambers is not None
+
+    @property
+    def weighs(self) -> bool:
+        """Whether R can be anything but 0."""
+        by_chambers = self.chambers is not None and not self.rejects
+        return by_chambers or self.symmetry is not None or self.mass_weight > 0
+
+    def counting(self) -> MakingRules:
+        """The same rules, with chambers counted in any case."""
+        return replace(self, counts=True)
+
+    def chambers_too_many(self, measured: Phenotypes) -> NDArray[np.int64]:
+        """(n,) separate chambers beyond what is allowed, over all supplies."""
+        if self.chambers is None:
+            return np.zeros(len(measured.neighbour_ratio), dtype=np.int64)
+        beyond = np.maximum(measured.chambers - np.array(self.chambers), 0)
+        return np.asarray(beyond.sum(axis=1))
+
+    def rejected(self, measured: Phenotypes) -> NDArray[np.bool_]:
+        """(n,) whether a section has more chambers than it may have at all."""
+        return np.asarray((self.chambers_too_many(measured) > 0) & self.rejects)
+
+    def weighted(self, measured: Phenotypes) -> FloatArray:
+        """(n,) R, what the weighted rules add to the total loss [mm²]."""
+        R = self.mass_weight * self.mass(measured)
+        if not self.rejects:
+            R = R + self.chamber_weight * self.chambers_too_many(measured)
+        if self.symmetry is not None:
+            R = R + self.symmetry_weight * measured.asymmetry
+        return R
+
+    def mass(self, measured: Phenotypes) -> FloatArray:
+        """(n,) mass of the actuator, density times material area times length [g]."""
+        return self.grams * measured.moments.area
+
+
+FREE = MakingRules()
+"""No rule: every section will do."""
+
+
+class Making(Model):
+    """What makes a section easy to make; weighted rules add to the loss that the search looks at.
+
+    A rejected candidate is never selected: with many feature points hardly any random section has
+    few chambers, so that weights lead there and a rejection does not.
+    """
+
+    chambers: tuple[MostChambers, MostChambers, MostChambers] | None = quantity(
+        None, "most separate chambers of each supply, as [1, 1, 1]; left out: any number"
+    )
+    chambers_rule: Literal["reject", "weighted"] = quantity(
+        "weighted", "what becomes of a section with more"
+    )
+    chambers_weight: Number = quantity(
+        100.0, "of each chamber too many, if weighted", unit="mm²", low=0, high=1e9
+    )
+    symmetry: Literal["none", "mirror", "three-fold"] = quantity(
+        "none", "about the x axis with supplies 2 and 3 changing places, or by 120° with 1 → 2 → 3"
+    )
+    symmetry_rule: Literal["repair", "weighted"] = quantity(
+        "repair", "every candidate is made symmetric, or what differs is weighed"
+    )
+    symmetry_weight: Number = quantity(
+        1000.0, "of the whole section differing, if weighted", unit="mm²", low=0, high=1e9
+    )
+    density: Number = quantity(
+        1070.0, "of the material, for its mass", unit="kg/m³", low=0, high=30_000
+    )
+    mass_weight: Number = quantity(
+        0.0, "of each gram of the actuator", unit="mm²/g", low=0, high=1e9
+    )
+
+    @property
+    def rules_set(self) -> bool:
+        """Whether there is any rule."""
+        return self.chambers is not None or self.symmetry != "none" or self.mass_weight > 0
+
+    def check_fits(self, grid: PolarGrid) -> None:
+        """Refuse a symmetry that the grid does not have.
+
+        Raises
+        ------
+        ValueError : the key, and what it needs.
+        """
+        if self.symmetry == "none":
+            return
+        said = f'making.symmetry = "{self.symmetry}": needs'
+        if not grid.is_full_ring:
+            raise ValueError(f"{said} a full ring, grid.stop 360 degrees above grid.start")
+        if self.symmetry == "three-fold" and grid.angular % 3:
+            raise ValueError(f"{said} grid.angular = {grid.angular} to be a multiple of 3")
+        turns = 2 * grid.start * grid.angular / grid.span
+        if self.symmetry == "mirror" and abs(turns - round(turns)) > 1e-6:
+            raise ValueError(f"{said} grid.start at the edge or in the middle of a column")
+
+    def images(self, grid: PolarGrid) -> Symmetry | None:
+        """The symmetry asked for."""
+        if self.symmetry == "none":
+            return None
+        return mirror_symmetry() if self.symmetry == "mirror" else threefold_symmetry(grid)
+
+    def repair(self, grid: PolarGrid) -> Symmetry | None:
+        """The symmetry that every candidate is to be given; None where it has not to have any."""
+        return self.images(grid) if self.symmetry_rule == "repair" else None
+
+    def rules(self, grid: PolarGrid, length: float) -> MakingRules:
+        """The rules for sections on `grid` of an actuator of this length [mm]."""
+        weighs = self.symmetry_rule == "weighted"
+        return MakingRules(
+            chambers=self.chambers,
+            rejects=self.chambers_rule == "reject",
+            chamber_weight=self.chambers_weight,
+            symmetry=self.images(grid) if weighs else None,
+            symmetry_weight=self.symmetry_weight,
+            grams=self.density * KILOGRAMS_PER_M3 * length,
+            mass_weight=self.mass_weight,
+        )

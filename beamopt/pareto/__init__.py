@@ -1,0 +1,1 @@
+"""Several objectives at once: designs of which none is better than another in all of them."""

@@ -1,0 +1,118 @@
+"""The folder of a front: table, designs, figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from beamopt.design import Design
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import clear_leftovers
+from beamopt.judge import Judge, Status
+from beamopt.pareto.front import Front
+from beamopt.pareto.scores import BEST, OBJECTIVES
+from beamopt.provenance import provenance
+from beamopt.scene_text import scene_text
+
+__all__ = ["JOURNAL", "front_csv", "write_front"]
+
+JOURNAL = "journal.jsonl"
+
+
+def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = True) -> None:
+    """Write table, designs and figure; each whole or not at all."""
+    clear_leftovers(folder, None)
+    write_atomic(folder / "scene.toml", scene_text(front.scene))
+    designs = {k: _design(front, k) for k in front.worth_keeping()}
+    names = {k: f"front-{k:03d}.json" for k in designs}
+    for old in folder.glob("front-*.json"):
+        if old.name not in names.values():
+            old.unlink()
+    for k, design in designs.items():
+        design.save(folder / names[k])
+    write_atomic(folder / "front.csv", front_csv(front, judge, designs, names))
+    write_atomic(folder / "history.csv", _history_csv(front))
+    write_atomic(folder / "summary.json", json_text(_summary(front)))
+    if figures and front.designs:
+        _draw(folder, front, designs)
+    timing = [
+        ("search", front.seconds, "s"),
+        ("evaluation", front.seconds / front.evaluations, "s"),
+    ]
+    write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
+    made = {"seed": front.scene.search.seed, **provenance(["pymoo", "moocore"])}
+    write_atomic(folder / "provenance.json", json_text(made))
+
+
+def front_csv(front: Front, judge: Judge, designs: dict[int, Design], names: dict[int, str]) -> str:
+    """A row a design, by L: losses [mm²], ratio, mass [g], chambers per supply, its file if any.
+
+    Of sealed designs that are kept also the L of the outline, which is what they are.
+    """
+    sealed = front.scene.seal.rules.sealed
+    header = "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"
+    rows = []
+    for k, one in enumerate(front.designs):
+        score, losses = one.score, one.score.verdict
+        numbers = losses.L, losses.K, losses.R, score.ratio, score.mass
+        row: list[object] = [k, *numbers, *score.chambers, names.get(k)]
+        if sealed:
+            row.append(judge.loss_of(designs[k].values) if k in designs else None)
+        rows.append(row)
+    return csv_text(header + (",L_of_outline" if sealed else ""), rows)
+
+
+def _design(front: Front, k: int) -> Design:
+    one, scene = front.designs[k], front.scene
+    losses = one.score.verdict
+    values = dict(zip(front.objectives, one.score.values(front.objectives), strict=True))
+    notes = {"scene": scene.name, "seed": scene.search.seed, **values, "L": losses.L, "K": losses.K}
+    return scene.design_of(one.points, notes)
+
+
+def _history_csv(front: Front) -> str:
+    lowest = [f"lowest_{name}" for name in front.objectives]
+    rows = []
+    for record in front.history:
+        values = [one.score.values(front.objectives) for one in record.front]
+        least = [min(column) for column in zip(*values, strict=True)] or [None] * len(lowest)
+        rows.append((record.index, record.evaluations, len(record.front), *least))
+    return csv_text(",".join(["generation", "evaluations", "front", *lowest]), rows)
+
+
+def _summary(front: Front) -> dict[str, object]:
+    """How it ended and what it found, without times."""
+    rejected = {one.name: front.rejected[one] for one in Status if one in front.rejected}
+    return {
+        "status": front.status.value,
+        "scene": front.scene.name,
+        "seed": front.scene.search.seed,
+        "objectives": list(front.objectives),
+        "population": front.population,
+        "generations": front.history[-1].index,
+        "evaluations": front.evaluations,
+        "front": len(front.designs),
+        "knee": front.knee if front.designs else None,
+        "rejected": rejected,
+    }
+
+
+def _draw(folder: Path, front: Front, designs: dict[int, Design]) -> None:
+    from beamopt.plot.pareto import pareto_figure
+    from beamopt.plot.style import save_figure
+
+    second = front.objectives[1]
+    least = int(front.values[:, 1].argmin())
+    titles = {
+        least: BEST[second],
+        front.knee: "knee" if front.bends else "middle",
+        0: BEST["L"],
+    }
+    kept = dict.fromkeys((0, front.knee, least))
+    figure = pareto_figure(
+        front.values[:, :2],
+        front.seen[:, :2],
+        [OBJECTIVES[name] for name in front.objectives[:2]],
+        [(k, titles[k], designs[k]) for k in kept],
+        f"{front.scene.name}: {len(front.designs)} designs of {front.evaluations} judged",
+    )
+    save_figure(figure, folder / "pareto.svg", folder / "pareto.png")

@@ -1,0 +1,91 @@
+"""A front: what a search for several objectives found, and how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamopt.arrays import FloatArray
+from beamopt.evolve.stopping import StopReason
+from beamopt.judge import Status
+from beamopt.pareto.search import Candidate, FrontRecord, front_values
+from beamopt.plot.pareto import spans_decades
+from beamopt.scene import Scene
+
+__all__ = ["Front"]
+
+MOST_DESIGNS = 30
+
+BENT = 0.95  # sum of both objectives; on the line between a front's ends it is 1
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """The outcome of `find_front`.
+
+    status : why it stopped. scene, objectives, population : what was searched for, and how.
+    history : one record a generation, the initial population first.
+    seen : (n, objectives) values of all that were judged.
+    rejected : how many could not be judged or may not be made, by reason.
+    seconds : time that the search took.
+    """
+
+    status: StopReason
+    scene: Scene
+    objectives: tuple[str, ...]
+    population: int
+    history: tuple[FrontRecord, ...]
+    seen: FloatArray
+    rejected: Mapping[Status, int]
+    seconds: float
+
+    @property
+    def designs(self) -> tuple[Candidate, ...]:
+        """The front, by the first objective, lowest first; each beats no other."""
+        return self.history[-1].front
+
+    @property
+    def values(self) -> FloatArray:
+        """(n, objectives) what the front's designs reach."""
+        return front_values(self.designs, self.objectives)
+
+    @property
+    def evaluations(self) -> int:
+        """Sections judged."""
+        return self.history[-1].evaluations
+
+    @property
+    def knee(self) -> int:
+        """The design farthest below the line between both ends, in the first two objectives.
+
+        Each objective goes from 0 to 1 along the front, by its logarithm where its figure has
+        that. Of a front without a bend it is the design in the middle.
+        """
+        sums = self._above_both
+        return int(sums.argmin()) if self.bends else len(sums) // 2
+
+    @property
+    def bends(self) -> bool:
+        """Whether there is a design well below the line between both ends."""
+        return bool(self._above_both.min() < BENT)
+
+    @property
+    def _above_both(self) -> FloatArray:
+        """(n,) sum of the first two objectives, each from 0 to 1; 1 on the line of the ends."""
+        shown = self.values[:, :2].copy()
+        for k in range(shown.shape[1]):
+            shown[:, k] = np.log(shown[:, k]) if spans_decades(shown[:, k]) else shown[:, k]
+        shown -= shown.min(axis=0)
+        spread = shown.max(axis=0)
+        return np.asarray((shown / np.where(spread > 0, spread, 1.0)).sum(axis=1))
+
+    def worth_keeping(self) -> list[int]:
+        """Places of at most 30 designs along the front: best of each objective, knee, others."""
+        count = len(self.designs)
+        if count <= MOST_DESIGNS:
+            return list(range(count))
+        chosen = {0, self.knee, *self.values.argmin(axis=0).tolist()}
+        evenly = np.linspace(0, count - 1, MOST_DESIGNS - len(chosen)).round().astype(int)
+        return sorted(chosen | set(evenly.tolist()))

@@ -1,0 +1,1 @@
+"""Beyond the genetic algorithm: types by annealing, positions by Gauss-Newton."""

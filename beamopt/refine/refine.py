@@ -1,0 +1,213 @@
+"""Refining a section: types by annealing, positions by Gauss-Newton, judged on the true section."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+from beamopt.judge import Judge, Verdict
+from beamopt.refine.annealing import Schedule, anneal
+from beamopt.refine.gauss_newton import Limits, descend
+from beamopt.refine.orbits import orbits_of, with_cells
+from beamopt.refine.truth import Judged, Truth, View, judged_on
+from beamopt.search_settings import Refining
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.symmetry import Symmetry
+from beamopt.streams import Purpose, stream
+
+__all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine"]
+
+FROM_THE_START = 3  # every so many rounds nothing is kept of the ones before
+
+
+class RefineStatus(Enum):
+    """How a refinement ended; the value is the text shown to people."""
+
+    REFINED = "refined"
+    UNCHANGED = "nothing better was found; the section is as it was"
+    NOT_JUDGED = "the section to refine can not be judged"
+
+
+class Stage(Enum):
+    """What a refinement does; the value stands in its table."""
+
+    START = "start"
+    ANNEALING = "annealing of types"
+    DESCENT = "descent of positions"
+    OUTLINE = "descent on the outline"
+
+
+@dataclass(frozen=True, slots=True)
+class StageRecord:
+    """What a stage ended in.
+
+    round : from 1 on. evaluations : sections judged so far. verdict : of the section that it ended
+    in, which need not be the best.
+    """
+
+    stage: Stage
+    round: int
+    evaluations: int
+    verdict: Verdict
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """What a refinement came to.
+
+    before, after : verdicts on what counts, the outline where it is sealed, else the raster; the
+    loss L + R and the neighbour ratio after it are never above those before.
+    flips : proposed to the model.
+    """
+
+    status: RefineStatus
+    points: FeaturePoints
+    before: Verdict
+    after: Verdict
+    stages: tuple[StageRecord, ...]
+    flips: int
+
+    @property
+    def evaluations(self) -> int:
+        """Sections judged."""
+        return self.stages[-1].evaluations if self.stages else 1
+
+
+def refine(
+    judge: Judge,
+    points: FeaturePoints,
+    settings: Refining | None = None,
+    *,
+    seed: int = 0,
+    symmetry: Symmetry | None = None,
+    callback: Callable[[StageRecord], None] | None = None,
+) -> Refined:
+    """Anneal types, then move points, in rounds until the loss is as low as moving can bring it.
+
+    The same for the same seed. Sealed sections are judged on their raster first, in the end on
+    their outline's moments.
+
+    Parameters
+    ----------
+    judge : what sections are judged with. points : to start from.
+    settings : how long, how hot; the defaults of a scene if left out.
+    symmetry : that `points` have, and keep.
+    callback : called after each stage.
+
+    Raises
+    ------
+    ValueError : a feature point farther than 10⁶ mm from the axis, where sections are sealed.
+    """
+    settings = settings or Refining()
+    sealed = judge.rules.sealed
+    counts = judged_on(judge, View.OUTLINE if sealed else View.RASTER)
+    before = counts(points)
+    if not before.found:
+        nothing = (StageRecord(Stage.START, 0, 1, before.verdict),)
+        return Refined(RefineStatus.NOT_JUDGED, points, before.verdict, before.verdict, nothing, 0)
+    work = _Work(judge, settings, seed, symmetry, callback)
+    work.evaluations = 1  # that before
+    best = work.rounds(points)
+    if sealed and best.found:
+        best = work.on_outline(best, counts, before)
+    better = best.loss <= before.loss and best.verdict.K <= before.verdict.K
+    better = better and (best.loss < before.loss or best.verdict.K < before.verdict.K)
+    status = RefineStatus.REFINED if better else RefineStatus.UNCHANGED
+    after = best if better else before
+    return Refined(
+        status, after.points, before.verdict, after.verdict, tuple(work.stages), work.flips
+    )
+
+
+def improved(
+    judge: Judge,
+    points: FeaturePoints,
+    settings: Refining,
+    *,
+    seed: int,
+    symmetry: Symmetry | None = None,
+) -> tuple[FeaturePoints, int]:
+    """What the rounds of a refinement come to on the raster, and how many sections they judged.
+
+    For use inside a search, which judges what comes out like any other candidate; its outline is
+    not looked at.
+    """
+    work = _Work(judge, settings, seed, symmetry, None)
+    best = work.rounds(points)
+    return (best.points if best.found else points), work.evaluations
+
+
+def _is_better(one: Judged, settled: bool, other: Judged, other_settled: bool) -> bool:
+    """Whether to keep `one`: of two that are settled that with the lower T, else the lower loss."""
+    if settled and other_settled:
+        return one.verdict.T < other.verdict.T
+    if settled != other_settled:
+        return settled
+    return one.loss < other.loss
+
+
+class _Work:
+    """The stages of one refinement, counted."""
+
+    def __init__(
+        self,
+        judge: Judge,
+        settings: Refining,
+        seed: int,
+        symmetry: Symmetry | None,
+        callback: Callable[[StageRecord], None] | None,
+    ) -> None:
+        self.judge, self.settings, self.seed = judge, settings, seed
+        self.symmetry, self.callback = symmetry, callback
+        self.stages: list[StageRecord] = []
+        self.evaluations = self.flips = 0
+
+    def rounds(self, points: FeaturePoints) -> Judged:
+        """The best of all rounds on the raster, K no higher than at first."""
+        settings, judge = self.settings, self.judge
+        truth = judged_on(judge, View.RASTER)
+        schedule = Schedule(
+            settings.flips, settings.walks, settings.hot, min(settings.cold, settings.hot)
+        )
+        start = truth(with_cells(points, self.symmetry))
+        self._told(Stage.START, 0, start, 1)
+        if not start.found:  # what its twins or the points on a mirror line were is missed
+            return start
+        enough = settings.ratio_enough * start.verdict.K
+        best, is_settled, here = start, False, start
+        for number in range(1, settings.rounds + 1):
+            rng = stream(self.seed, Purpose.REFINEMENT, number)
+            orbits = orbits_of(len(here.points), self.symmetry)
+            annealed, judged = anneal(judge, truth, here, orbits, schedule, rng)
+            self.flips += schedule.flips
+            self._told(Stage.ANNEALING, number, annealed, judged)
+            most = best.verdict.K if is_settled else start.verdict.K
+            limits = Limits(settings.steps, most, settings.good_enough)
+            moved, judged, settled = descend(judge, truth, annealed, orbits, limits, rng)
+            self._told(Stage.DESCENT, number, moved, judged)
+            if moved.verdict.K <= start.verdict.K and _is_better(moved, settled, best, is_settled):
+                best, is_settled = moved, settled
+            if is_settled and enough >= best.verdict.K:
+                break
+            here = start if number % FROM_THE_START == 0 else best
+        return best
+
+    def on_outline(self, best: Judged, truth: Truth, before: Judged) -> Judged:
+        """The last steps, on the polygons that a sealed section is."""
+        orbits = orbits_of(len(best.points), self.symmetry)
+        rng = stream(self.seed, Purpose.REFINEMENT, 0)
+        start = truth(best.points)
+        if not start.found:
+            return before
+        limits = Limits(self.settings.outline_steps, before.verdict.K, self.settings.good_enough)
+        moved, judged, _ = descend(self.judge, truth, start, orbits, limits, rng)
+        self._told(Stage.OUTLINE, 0, moved, judged + 1)
+        return moved
+
+    def _told(self, stage: Stage, number: int, judged: Judged, evaluations: int) -> None:
+        self.evaluations += evaluations
+        record = StageRecord(stage, number, self.evaluations, judged.verdict)
+        self.stages.append(record)
+        if self.callback is not None:
+            self.callback(record)

@@ -1,0 +1,85 @@
+"""What a refinement judges on: the true section, as raster or as outline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from beamopt.aim import Aim
+from beamopt.answers import Answers
+from beamopt.judge import Judge, Status, Verdict
+from beamopt.rod.ladder import SectionValues
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.moments import Moments
+from beamopt.section.phenotype import Phenotypes
+
+__all__ = ["Judged", "Truth", "View", "judged_on"]
+
+
+class View(Enum):
+    """Which section is judged; the value stands in the history."""
+
+    RASTER = "raster"
+    OUTLINE = "outline"
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A section that was judged.
+
+    section : what the rod knows of it. aim : what its tips should be, points of paths as rows at
+    the pressures that were found best. answers : its tips, and where they point.
+    """
+
+    points: FeaturePoints
+    verdict: Verdict
+    section: SectionValues
+    aim: Aim
+    answers: Answers
+
+    @property
+    def found(self) -> bool:
+        """Whether it could be judged."""
+        return self.verdict.status is Status.JUDGED
+
+    @property
+    def loss(self) -> float:
+        """L and the weighted rules [mm²]; infinite where it could not be judged."""
+        return self.verdict.ruled_loss
+
+
+Truth = Callable[[FeaturePoints], Judged]
+"""Judges one section."""
+
+
+def judged_on(judge: Judge, view: View) -> Truth:
+    """What judges feature points on their raster, or on the moments of their outline."""
+    from beamopt.outline.build import outline_moments
+
+    def truth(points: FeaturePoints) -> Judged:
+        measured = judge.measured([points])
+        if view is View.OUTLINE:
+            smooth = outline_moments(judge.grid, points, judge.rules)
+            measured = replace(measured, moments=Moments(smooth.raw[None]))
+        return _judged(judge, points, measured)
+
+    return truth
+
+
+def _judged(judge: Judge, points: FeaturePoints, measured: Phenotypes) -> Judged:
+    verdict = judge.verdicts(measured, [len(points)])[0]
+    if verdict.status is not Status.JUDGED:
+        nothing = Answers(np.zeros((0, 3)))
+        return Judged(points, verdict, SectionValues(Moments(np.zeros((4, 6)))), judge.aim, nothing)
+    section = judge.values(measured, 0)
+    aim = judge.settled(section)
+    return Judged(points, verdict, section, aim, answers_to(judge, aim, section))
+
+
+def answers_to(judge: Judge, aim: Aim, section: SectionValues) -> Answers:
+    """Tips of a section at the rows of an aim without paths."""
+    parents = judge.question.parents if aim is judge.aim else None
+    return replace(judge.question, aim=aim, parents=parents).of_section(section)[0]

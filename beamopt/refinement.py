@@ -1,0 +1,79 @@
+"""Refining a design: what `beamopt refine` and the end of a search do."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from beamopt.design import Design
+from beamopt.errors import InputError
+from beamopt.refine.refine import Refined, RefineStatus, StageRecord, refine
+from beamopt.scene import Scene
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.target import Target
+
+__all__ = ["Refinement", "refine_design", "refine_points"]
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """A refined design.
+
+    design : never worse than the one before in L + R nor in the neighbour ratio.
+    refined : how it came about. seconds : time it took.
+    """
+
+    design: Design
+    refined: Refined
+    seconds: float
+
+
+def refine_design(
+    design: Design,
+    scene: Scene,
+    target: Target | None = None,
+    callback: Callable[[StageRecord], None] | None = None,
+) -> Refinement:
+    """Refine a design for a scene's target, after the scene's rules, whatever its own were.
+
+    Raises
+    ------
+    InputError : the design is drawn, or the scene's target can not be used.
+    """
+    points = design.source
+    if not isinstance(points, FeaturePoints):
+        said = "a design of feature points; drawn chambers have none to move"
+        raise InputError("", "drawing", None, said)
+    return refine_points(points, scene, target or scene.load_target(), callback)
+
+
+def refine_points(
+    points: FeaturePoints,
+    scene: Scene,
+    target: Target,
+    callback: Callable[[StageRecord], None] | None = None,
+) -> Refinement:
+    """Refine feature points for a target; the same for the same scene, seed and points."""
+    started = time.perf_counter()
+    found = refine(
+        scene.judge(target),
+        points,
+        scene.refine,
+        seed=scene.search.seed,
+        symmetry=scene.making.repair(scene.grid.build()),
+        callback=callback,
+    )
+    notes = {"scene": scene.name, "seed": scene.search.seed, **_losses(scene, found)}
+    return Refinement(scene.design_of(found.points, notes), found, time.perf_counter() - started)
+
+
+def _losses(scene: Scene, found: Refined) -> dict[str, object]:
+    """What a design notes of its losses; nothing where it could not be judged."""
+    if found.status is RefineStatus.NOT_JUDGED:
+        return {}
+    after, before = found.after, found.before
+    losses: dict[str, object] = {"L": after.L, "K": after.K}
+    if scene.making.rules_set:
+        losses["R"] = after.R
+    return losses | {"refined_from": {"L": before.L, "K": before.K}}

@@ -1,0 +1,88 @@
+"""The files of a refinement: design, stages, distances, figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from beamopt.answers import Answers
+from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.judge import Status, Verdict
+from beamopt.provenance import provenance
+from beamopt.refinement import Refinement
+from beamopt.result_tables import tips_table_csv
+from beamopt.scene import Scene
+from beamopt.target import Target
+
+__all__ = ["REFINEMENT_FILES", "refinement_numbers", "write_refined_design", "write_refinement"]
+
+REFINEMENT_FILES = (
+    "refined.json",
+    "refinement.csv",
+    "refined_tips.csv",
+    "refined.svg",
+    "refined.png",
+)
+"""Every file that `write_refinement` writes."""
+
+
+def write_refinement(
+    folder: Path, scene: Scene, target: Target, found: Refinement, *, figures: bool = True
+) -> None:
+    """Write what was found to a folder that is there; each file whole or not at all."""
+    found.design.save(folder / "refined.json")
+    write_atomic(folder / "refinement.csv", stages_csv(found))
+    if found.refined.after.status is not Status.JUDGED:
+        return
+    answers = _answers(scene, target, found)
+    if len(target.aim):
+        write_atomic(folder / "refined_tips.csv", tips_table_csv(target.aim, answers))
+    if figures:
+        from beamopt.plot.figures import design_figure, design_title
+        from beamopt.plot.style import save_figure
+
+        figure = design_figure(found.design, target, f"{design_title(found.design)}, refined")
+        save_figure(figure, folder / "refined.svg", folder / "refined.png")
+
+
+def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refinement) -> None:
+    """The same with a summary, for a refinement that is not a search's: a folder of its own."""
+    write_refinement(folder, scene, target, found)
+    numbers = {"scene": scene.name, "seed": scene.search.seed, **refinement_numbers(found, scene)}
+    write_atomic(folder / "summary.json", json_text(numbers))
+    timing = [("refinement", found.seconds, "s")]
+    write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
+    write_atomic(folder / "provenance.json", json_text(provenance()))
+
+
+def _answers(scene: Scene, target: Target, found: Refinement) -> Answers:
+    return scene.judge(target).question.of_section(found.design.values)[0]
+
+
+def stages_csv(found: Refinement) -> str:
+    """What every stage ended in: sections judged so far, L, K, R [mm²]."""
+    rows = [
+        (one.stage.value, one.round, one.evaluations, one.verdict.L, one.verdict.K, one.verdict.R)
+        for one in found.refined.stages
+        if one.verdict.status is Status.JUDGED
+    ]
+    return csv_text("stage,round,evaluations,L,K,R", rows)
+
+
+def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
+    """How it ended and what it changed, without times."""
+    refined, weight = found.refined, scene.search.neighbour_weight
+    return {
+        "status": refined.status.value,
+        "before": _losses(refined.before, weight),
+        "after": _losses(refined.after, weight),
+        "evaluations": refined.evaluations,
+        "flips": refined.flips,
+    }
+
+
+def _losses(verdict: Verdict, weight: float) -> dict[str, Any]:
+    if verdict.status is not Status.JUDGED:
+        return {"status": verdict.status.value}
+    ratio = {"neighbour_ratio": verdict.K / weight} if weight > 0 else {}
+    return {"L": verdict.L, "K": verdict.K, "T": verdict.T, **ratio}

@@ -1,0 +1,159 @@
+"""Refining designs and runs: files, command line, the same bytes again."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+import beamopt
+from beamopt.cli.application import run
+from beamopt.design import load_design
+from beamopt.errors import InputError
+from beamopt.folder import design_file
+from beamopt.optimisation import optimize
+from beamopt.refine.refine import RefineStatus
+from beamopt.refinement import refine_design
+from beamopt.refinement_folder import REFINEMENT_FILES
+from beamopt.result import Optimisation
+from beamopt.scene import load_scene
+from tests.validation.resume import content
+
+KEYS = ("grid.radial=32", "grid.angular=90", "section.feature_points=30")
+SHORT = ("search.generations=3", "refine.rounds=2", "refine.flips=4000")
+SETTINGS = [f"--set={key}" for key in (*KEYS, *SHORT)]
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Optimisation]:
+    folder = tmp_path_factory.mktemp("run") / "finished"
+    scene = load_scene("hand-drawn-workspace", [*KEYS, *SHORT, "refine.finish=true"])
+    return folder, optimize(scene, folder)
+
+
+def test_a_search_that_ends_by_refining_keeps_both_designs(finished) -> None:
+    folder, result = finished
+    found = result.refinement
+    assert found is not None
+    assert found.refined.status is RefineStatus.REFINED
+    assert set(REFINEMENT_FILES) <= {path.name for path in folder.iterdir()}
+    best, refined = load_design(folder / "best.json"), load_design(folder / "refined.json")
+    aim = result.target.aim
+    assert float(aim.loss(best.workspace.tips)) == pytest.approx(result.verdict.L)
+    assert float(aim.loss(refined.workspace.tips)) == pytest.approx(found.refined.after.L)
+    assert refined.notes["refined_from"] == {"L": result.verdict.L, "K": result.verdict.K}
+    assert found.refined.after.L < result.verdict.L
+    assert found.refined.after.K <= result.verdict.K
+    assert design_file(folder).name == "refined.json"
+
+
+def test_what_a_refinement_says_of_itself(finished) -> None:
+    folder, result = finished
+    found = result.refinement
+    assert found is not None
+    said = json.loads((folder / "summary.json").read_text())["refinement"]
+    assert said["before"]["L"] == result.verdict.L
+    assert said["after"]["L"] == found.refined.after.L
+    weight = result.scene.search.neighbour_weight
+    assert said["after"]["neighbour_ratio"] == found.refined.after.K / weight
+    assert "seconds" not in json.dumps(said)
+    stages = list(csv.DictReader((folder / "refinement.csv").read_text().splitlines()))
+    assert [row["stage"] for row in stages[:3]] == [
+        "start",
+        "annealing of types",
+        "descent of positions",
+    ]
+    assert int(stages[-1]["evaluations"]) == said["evaluations"] == found.refined.evaluations
+    assert "refinement," in (folder / "timing.csv").read_text()
+    distances = list(csv.DictReader((folder / "refined_tips.csv").read_text().splitlines()))
+    total = sum(float(row["distance_mm"]) ** 2 for row in distances)
+    assert total == pytest.approx(found.refined.after.L)
+
+
+def test_refining_a_run_afterwards_gives_the_same_bytes(finished, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    assert run(["optimize", "hand-drawn-workspace", "--out", str(folder), *SETTINGS]) == 0
+    assert not (folder / "refined.json").exists()
+    assert design_file(folder).name == "best.json"
+    assert run(["refine", str(folder)]) == 0
+    assert content(folder) == content(finished[0])
+
+
+def test_refine_as_an_option_is_the_key_of_the_scene(finished, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    words = ["optimize", "hand-drawn-workspace", "--out", str(folder), "--refine", *SETTINGS]
+    assert run(words) == 0
+    assert content(folder) == content(finished[0])
+
+
+def test_a_design_file_is_refined_for_a_scene(
+    finished, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, design = tmp_path / "out", finished[0] / "best.json"
+    words = ["refine", str(design), "--scene", "hand-drawn-workspace", "--out", str(out)]
+    assert run([*words, *SETTINGS]) == 0
+    said = capsys.readouterr().out
+    assert "refined L" in said
+    assert "bound" in said
+    scene = load_scene("hand-drawn-workspace", [*KEYS, *SHORT])
+    again = refine_design(load_design(design), scene)
+    assert load_design(out / "refined.json").json() == again.design.json()
+    assert {"summary.json", "timing.csv", "provenance.json"} <= {p.name for p in out.iterdir()}
+    assert run([*words, *SETTINGS]) == 2  # what is there stays
+
+
+def test_interrupted_refining_leaves_the_search_and_can_be_gone_on_with(
+    finished, tmp_path: Path
+) -> None:
+    scene = load_scene("hand-drawn-workspace", [*KEYS, *SHORT, "refine.finish=true"])
+
+    def interrupt(record: object) -> None:
+        raise KeyboardInterrupt
+
+    folder = tmp_path / "run"
+    cut = optimize(scene, folder, refining=interrupt)
+    assert cut.refinement is None
+    assert "interrupted" in cut.status.value
+    assert not (folder / "refined.json").exists()
+    optimize(scene, folder, resume=True)
+    assert content(folder) == content(finished[0])
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["refine", "best.json"], "--scene: must name a scene"),
+        (["refine", "nothing.json", "--scene", "random-section"], "nothing.json"),
+        (["refine", "drawn.json", "--scene", "hand-drawn-section"], "drawing"),
+        (["refine", "run", "--scene", "random-section"], "goes with a design file"),
+        (["refine", "run", "--set", "search.seed=3"], r"a key of [refine]"),
+        (["refine", "run", "--set", "refine.rounds=0"], "refine.rounds"),
+        (["refine", "."], "no run folder"),
+    ],
+)
+def test_misuse_is_one_line(
+    words: list[str],
+    said: str,
+    finished,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run").symlink_to(finished[0])
+    (tmp_path / "best.json").write_bytes((finished[0] / "best.json").read_bytes())
+    drawn = Path(beamopt.__file__).parent / "scenes" / "hand_drawn_section.json"
+    (tmp_path / "drawn.json").write_bytes(drawn.read_bytes())
+    before = content(finished[0])
+    assert run(words) == 2
+    complaint = capsys.readouterr().err
+    assert said in complaint
+    assert complaint.count("\n") == 1
+    assert content(finished[0]) == before
+
+
+def test_a_drawing_has_no_points_to_refine() -> None:
+    scene = load_scene("hand-drawn-section")
+    design = load_design(str(scene.target.file))
+    with pytest.raises(InputError, match="drawn chambers have none to move"):
+        refine_design(design, scene)

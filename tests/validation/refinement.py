@@ -1,0 +1,98 @@
+"""Refining what a search found: how low L gets, how the neighbour ratio falls, how long it takes.
+
+The 48 searches of the paper's study, and 32 with sealed sections whose targets belong to sealed
+sections; each best design is refined. One process, so that times can be compared.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from beamopt.bound.certificate import certificate
+from beamopt.scene import load_scene
+from beamopt.study.plan import TARGETS, Plan
+from beamopt.study.run import run_study
+from beamopt.study.table import RefinedOutcome
+from tests.validation.check import Check, Row
+
+__all__ = ["SEALED", "SEALED_TARGETS", "checks"]
+
+SEALED = (
+    "seal.skin=1.0",
+    "seal.wall=0.9",
+    "seal.rounding=0.5",
+    "seal.smallest_chamber=3.0",
+    'seal.islands="remove"',
+)
+SEALED_TARGETS = ("random-section", "sealed-section")
+
+REACHED = 0.1  # mm²
+ABOVE = 0.002  # of the bound
+ON_AVERAGE = 0.7  # of the neighbour ratio before
+ISSUE = "must hold"
+
+
+@dataclass(frozen=True)
+class Studied:
+    """One target of a study."""
+
+    target: str
+    overrides: tuple[str, ...] = ()
+    iterations: int = 4
+
+    @property
+    def name(self) -> str:
+        """For the table."""
+        return f"{self.target}, sealed" if self.overrides else self.target
+
+
+def checks(full: bool) -> list[Check]:
+    """Every target with its searches; without `full` one iteration of each."""
+    iterations = 4 if full else 1
+    studied = [Studied(target, (), iterations) for target in TARGETS]
+    studied += [Studied(target, SEALED, iterations) for target in SEALED_TARGETS]
+    return [Check(one.name, partial(rows_of, one)) for one in studied]
+
+
+def rows_of(studied: Studied) -> Iterator[Row]:
+    """Every search's refined L, then ratios and times over all of them."""
+    scene = load_scene(studied.target, studied.overrides)
+    ring = certificate(scene, scene.load_target()).ring
+    assert ring is not None
+    plan = Plan(studied.iterations, 0, studied.overrides, (studied.target,))
+    with tempfile.TemporaryDirectory() as folder:
+        warm = Plan(1, 99, ("search.generations=1", *studied.overrides), (studied.target,))
+        run_study(Path(folder) / "warm", warm, figures=False)  # compiles, or loads what is compiled
+        outcomes = run_study(Path(folder) / "study", plan, figures=False)
+    for one in outcomes:
+        assert one.refined is not None
+        yield _loss_row(
+            f"{studied.name}, {one.run.combination} {one.run.iteration}", one.refined, ring.outer
+        )
+    shares = np.array(
+        [one.refined.ratio / one.refined.ratio_before for one in outcomes if one.refined]
+    )
+    times = np.array([one.refined.seconds / one.seconds for one in outcomes if one.refined])
+    yield _at_most(
+        f"{studied.name}: neighbour ratio, after over before, largest", shares.max(), 1.0
+    )
+    yield _at_most(f"{studied.name}: the same, mean", shares.mean(), ON_AVERAGE)
+    yield _at_most(f"{studied.name}: time over the search's own, longest", times.max(), 1.0)
+    yield _at_most(f"{studied.name}: the same, mean", times.mean(), 1.0)
+
+
+def _loss_row(name: str, refined: RefinedOutcome, bound: float) -> Row:
+    """L of a target that can be reached; of another one over the ring's bound."""
+    if bound < 1e-6:
+        return Row(f"{name}: refined L [mm²]", ISSUE, 0.0, refined.L, REACHED)
+    return Row(f"{name}: refined L over the ring's bound", ISSUE, 1.0, refined.L / bound, ABOVE)
+
+
+def _at_most(name: str, measured: float, limit: float) -> Row:
+    return Row(name, ISSUE, limit / 2, float(measured), limit / 2)
