@@ -54,7 +54,7 @@ class Refining(Model):
     outline_steps: Count = quantity(
         40, "most outlines judged in the end, of sealed sections", low=0
     )
-    rounds: Count = quantity(8, "most rounds; fewer where moving points settles", low=1, high=1000)
+    rounds: Count = quantity(6, "most rounds; fewer where moving points settles", low=1, high=1000)
     good_enough: Number = quantity(0.05, "a loss with nothing left to refine", unit="mm²", low=0)
     ratio_enough: Number = quantity(
         0.75, "share of the first neighbour ratio that is low enough", low=0, high=1

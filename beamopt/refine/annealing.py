@@ -24,6 +24,7 @@ from beamopt.refine.orbits import Orbits
 from beamopt.refine.truth import Judged, Truth
 from beamopt.rod.response import linear_response
 from beamopt.section.delaunay import delaunay_edges
+from beamopt.section.neighbours import neighbours_of
 
 __all__ = ["Schedule", "anneal"]
 
@@ -66,7 +67,8 @@ def anneal(
     grid, points = judge.grid, start.points
     fragments = fragments_of(grid, points, judge.wall_elements, judge.rules)
     edges = delaunay_edges(points.x, points.y)
-    flips = Flips(fragments, edges, orbits, judge.neighbour_weight)
+    around = neighbours_of(edges, len(points))
+    flips = Flips(fragments, edges, *around, orbits, judge.neighbour_weight)
     here, best, judged = start, None, 0
     for chain in range(schedule.walks):
         temperature = schedule.temperature(chain)

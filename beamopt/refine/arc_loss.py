@@ -34,10 +34,11 @@ class ArcAim(NamedTuple):
 
 
 @compiled
-def arc_loss(raw: FloatArray, aim: ArcAim) -> float:
+def arc_loss(raw: FloatArray, aim: ArcAim, enough: float = np.inf) -> float:
     """L [mm²] of the arc whose section has the moments `raw` (4, 6); infinite where not stiff.
 
-    The same as `linear_response`, `arc_tips` and `Aim.loss` one after the other.
+    The same as `linear_response`, `arc_tips` and `Aim.loss` one after the other. Where it is above
+    `enough`, what comes back is too, but need not be the loss: the sum ends there.
     """
     area = raw[0, 0]
     if not area > 0:
@@ -57,7 +58,7 @@ def arc_loss(raw: FloatArray, aim: ArcAim) -> float:
         matrix[1, i] = (i22 * sy + i12 * sx) / determinant / modulus
         matrix[2, i] = (-i12 * sy - i11 * sx) / determinant / modulus
     total = 0.0
-    for j in range(aim.pressures.shape[0]):
+    for j in range(aim.pressures.shape[0] - 1, -1, -1):  # high pressures, large distances first
         p, q, r = aim.pressures[j, 0], aim.pressures[j, 1], aim.pressures[j, 2]
         stretch = 1 + matrix[0, 0] * p + matrix[0, 1] * q + matrix[0, 2] * r
         k1 = length * (aim.curvature[0] + matrix[1, 0] * p + matrix[1, 1] * q + matrix[1, 2] * r)
@@ -77,4 +78,6 @@ def arc_loss(raw: FloatArray, aim: ArcAim) -> float:
             v = -leans * k1 - aim.directions[j, 1]
             w = 2 * cosine * cosine - 1 - aim.directions[j, 2]
             total += aim.direction_weights[j] * (u * u + v * v + w * w)
-    return total
+        if total > enough:
+            break
+    return float(total)

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.compiled import compiled, inlined
 from beamopt.refine.arc_loss import ArcAim, arc_loss
-from beamopt.refine.fragments import Fragments, kinds_of, moments_of_kinds, retype
+from beamopt.refine.fragments import Fragments, kinds_of, moments_of_kinds, retyped
 from beamopt.refine.orbits import Orbits
 
 __all__ = ["Flips", "flip", "walk"]
@@ -18,12 +18,15 @@ __all__ = ["Flips", "flip", "walk"]
 class Flips(NamedTuple):
     """What flipping types can do.
 
-    fragments : of the section. edges (m, 2) : neighbours. orbits : points that flip together.
+    fragments : of the section. edges (m, 2) : neighbours; those of point k are
+    `neighbours[begin[k]:begin[k + 1]]`. orbits : points that flip together.
     neighbour_weight : λ of the second objective.
     """
 
     fragments: Fragments
     edges: IndexArray
+    begin: IndexArray
+    neighbours: IndexArray
     orbits: Orbits
     neighbour_weight: float
 
@@ -47,24 +50,45 @@ def walk(
     types (n,). added (4, 6) : what the model leaves out of the moments, as last judged.
     total : T there. draws (proposals, 4) : random numbers in [0, 1).
     """
-    kinds = kinds_of(flips.fragments, types)
-    raw = moments_of_kinds(flips.fragments, kinds) + added
+    fragments, members = flips.fragments, flips.orbits.members
+    kinds = kinds_of(fragments, types)
+    raw = moments_of_kinds(fragments, kinds) + added
     before = np.empty((4, 6))
-    for draw in draws:
-        generator, new = _random_flip(types, flips, draw)
-        old = types[flips.orbits.members[generator, 0]]
+    different = _different(types, flips)
+    images, count = members.shape[1], flips.edges.shape[0]
+    for k in range(draws.shape[0]):
+        generator, new = _random_flip(types, flips, draws[k, 0], draws[k, 1], draws[k, 2])
+        old = types[members[generator, 0]]
         if new == old:
             continue
-        before[:] = raw
-        flip(types, kinds, raw, generator, new, flips)
-        ratio = _ratio(flips.edges, types)
-        new_total = arc_loss(raw, aim) + flips.neighbour_weight * ratio
-        if new_total <= total or draw[3] < np.exp((total - new_total) / temperature):
-            total = new_total
+        # as good as this is accepted; most flips are not, by their neighbours alone
+        limit = total - temperature * np.log(draws[k, 3]) if draws[k, 3] > 0 else np.inf
+        for image in range(images):
+            types[members[generator, image]] = flips.orbits.types[image, new]
+        if images > 1:  # some may be neighbours
+            now = _different(types, flips)
         else:
-            flip(types, kinds, raw, generator, old, flips)
+            now, point = different, members[generator, 0]
+            for at in range(flips.begin[point], flips.begin[point + 1]):
+                near = types[flips.neighbours[at]]
+                now += (near != new) - (near != old)
+        second = flips.neighbour_weight * now / max(count - now, 1)
+        accepted = second <= limit
+        if accepted:
+            before[:] = raw
+            for image in range(images):
+                retyped(fragments, types, kinds, raw, members[generator, image])
+            first = arc_loss(raw, aim, limit - second)
+            if first + second <= limit:
+                total, different = first + second, now
+                continue
+        for image in range(images):
+            types[members[generator, image]] = flips.orbits.types[image, old]
+        if accepted:
+            for image in range(images):
+                retyped(fragments, types, kinds, raw, members[generator, image])
             raw[:] = before
-    return total
+    return float(total)
 
 
 @compiled
@@ -75,29 +99,31 @@ def flip(
     for image in range(flips.orbits.members.shape[1]):
         types[flips.orbits.members[generator, image]] = flips.orbits.types[image, new]
     for image in range(flips.orbits.members.shape[1]):
-        retype(flips.fragments, types, kinds, raw, flips.orbits.members[generator, image])
+        retyped(flips.fragments, types, kinds, raw, flips.orbits.members[generator, image])
 
 
-@compiled
-def _random_flip(types: LabelArray, flips: Flips, draw: FloatArray) -> tuple[int, int]:
-    count = flips.edges.shape[0]
-    if draw[0] < 0.5 or count == 0:
-        generator = int(draw[1] * flips.orbits.members.shape[0])
-        return generator, int(draw[2] * 4)
-    edge = flips.edges[int(draw[1] * count)]
-    side = int(draw[2] * 2)
-    point, wanted = edge[side], types[edge[1 - side]]
-    image = flips.orbits.image[point]
-    for new in range(4):
-        if flips.orbits.types[image, new] == wanted:
-            return flips.orbits.generator[point], new
-    return flips.orbits.generator[point], wanted
-
-
-@compiled
-def _ratio(edges: IndexArray, types: LabelArray) -> float:
-    """Edges between different types over edges between equal ones; see `neighbour_ratio`."""
+@inlined
+def _different(types: LabelArray, flips: Flips) -> int:
+    """Edges between different types."""
     different = 0
-    for e in range(edges.shape[0]):
-        different += types[edges[e, 0]] != types[edges[e, 1]]
-    return float(different / max(edges.shape[0] - different, 1))
+    for e in range(flips.edges.shape[0]):
+        different += types[flips.edges[e, 0]] != types[flips.edges[e, 1]]
+    return different
+
+
+@inlined
+def _random_flip(
+    types: LabelArray, flips: Flips, way: float, where: float, what: float
+) -> tuple[int, int]:
+    count = flips.edges.shape[0]
+    if way < 0.5 or count == 0:
+        generator, new = int(where * flips.orbits.members.shape[0]), int(what * 4)
+    else:
+        e, side = int(where * count), int(what * 2)
+        point, wanted = flips.edges[e, side], types[flips.edges[e, 1 - side]]
+        generator, image = flips.orbits.generator[point], flips.orbits.image[point]
+        new = 0
+        for one in range(4):
+            if flips.orbits.types[image, one] == wanted:
+                new = one
+    return generator, new

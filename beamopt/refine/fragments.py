@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.compiled import compiled, inlined
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
@@ -23,7 +23,7 @@ from beamopt.section.raster import nearest_types, tiling
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.section.walls import wall_steps
 
-__all__ = ["Fragments", "fragments_of", "kinds_of", "moments_of_kinds", "retype"]
+__all__ = ["Fragments", "fragments_of", "kinds_of", "moments_of_kinds", "retype", "retyped"]
 
 FAR = -1  # pads the rows of `others`
 FEW_NEAR = 6  # room for neighbours within a wall of elements; more where that is too few
@@ -209,18 +209,19 @@ def kinds_of(fragments: Fragments, types: LabelArray) -> LabelArray:
     return kinds
 
 
-@compiled
+@inlined
 def _kind(fragments: Fragments, types: LabelArray, f: int) -> int:
     own = types[fragments.owner[f]]
-    if own == 0:
-        return 0
-    for other in fragments.others[f]:
-        if other < 0:
+    kind = own
+    for m in range(fragments.others.shape[1]):
+        other = fragments.others[f, m]
+        if own == 0 or other < 0:
             break
         near = types[other]
         if near != 0 and near != own:
-            return 0
-    return int(own)
+            kind = np.uint8(0)
+            break
+    return int(kind)
 
 
 @compiled
@@ -238,7 +239,16 @@ def retype(
     fragments: Fragments, types: LabelArray, kinds: LabelArray, raw: FloatArray, point: int
 ) -> None:
     """Bring `kinds` and `raw` up to date, in place, after the type of `point` has changed."""
-    for f in fragments.touched[fragments.begin[point] : fragments.begin[point + 1]]:
+    retyped(fragments, types, kinds, raw, point)
+
+
+@inlined
+def retyped(
+    fragments: Fragments, types: LabelArray, kinds: LabelArray, raw: FloatArray, point: int
+) -> None:
+    """The same, for kernels that do little else."""
+    for at in range(fragments.begin[point], fragments.begin[point + 1]):
+        f = fragments.touched[at]
         old, new = kinds[f], _kind(fragments, types, f)
         if new != old:
             kinds[f] = new

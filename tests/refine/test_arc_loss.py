@@ -54,6 +54,18 @@ def test_as_the_rooms_that_it_stands_for(seed: int, turns: bool, rest: float) ->
     )
 
 
+@given(st.integers(0, 10_000), st.floats(0.0, 2.0))
+def test_a_sum_that_ends_early_is_above_what_is_enough(seed: int, share: float) -> None:
+    raw, aim = raw_of(seed % 50), arc_aim(aim_of(seed, bool(seed % 2)), np.zeros(2))
+    loss = arc_loss(raw, aim)
+    enough = share * loss
+    found = arc_loss(raw, aim, enough)
+    if loss <= enough:
+        assert found == loss
+    else:
+        assert enough < found <= loss
+
+
 @pytest.mark.parametrize("pressure", [0.0, 1e-12, 1e-6, 1e-3, 0.01])
 def test_the_straight_limit(pressure: float) -> None:
     raw, plain = raw_of(1), aim_of(1, True)

@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 
 from beamopt.arrays import FloatArray
 from beamopt.refine.edges import moment_slopes
+from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
+from beamopt.section.neighbours import neighbours_of
 from tests.refine.cases import domain_polygon, exact_moments, points_of, scattered
 
 RING = PolarGrid(radial=32, angular=90)
@@ -87,6 +89,17 @@ def test_without_edges_nothing_changes(count: int) -> None:
     slopes = moment_slopes(RING, scattered(RING, count, 0))
     assert slopes.shape == (count, 2, 4, 6)
     assert not slopes.any()
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 30])
+def test_neighbours_are_the_edges_from_both_ends(count: int) -> None:
+    points = scattered(RING, count, 8)
+    edges = delaunay_edges(points.x, points.y)
+    begin, neighbours = neighbours_of(edges, count)
+    assert begin.shape == (count + 1,)
+    listed = {(k, int(n)) for k in range(count) for n in neighbours[begin[k] : begin[k + 1]]}
+    assert listed == {(int(a), int(b)) for edge in edges for a, b in (edge, edge[::-1])}
+    assert len(neighbours) == len(listed)
 
 
 def test_a_twin_has_no_slopes() -> None:

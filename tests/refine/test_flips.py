@@ -15,6 +15,7 @@ from beamopt.refine.orbits import orbits_of
 from beamopt.refine.truth import Judged
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.neighbours import neighbours_of
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
 from tests.refine.cases import judge_of, judged, points_of, random_points
 
@@ -22,7 +23,9 @@ from tests.refine.cases import judge_of, judged, points_of, random_points
 def flips_of(judge: Judge, points: FeaturePoints, symmetry: Symmetry | None = None) -> Flips:
     fragments = fragments_of(judge.grid, points, judge.wall_elements, judge.rules)
     edges = delaunay_edges(points.x, points.y)
-    return Flips(fragments, edges, orbits_of(len(points), symmetry), judge.neighbour_weight)
+    around = neighbours_of(edges, len(points))
+    orbits = orbits_of(len(points), symmetry)
+    return Flips(fragments, edges, *around, orbits, judge.neighbour_weight)
 
 
 def walked(

@@ -221,14 +221,15 @@ def test_steps_are_short() -> None:
     assert 0 < far <= 0.04 * judge.grid.outer_radius * (1 + 1e-9)
 
 
-def test_a_reachable_target_is_reached() -> None:
+@pytest.mark.parametrize("seed", [0, 2, 5])
+def test_a_reachable_target_is_reached(seed: int) -> None:
     """From types that fit, moved by a little: back to a loss of nothing, and settled."""
     judge = judge_of("random-section", "section.feature_points=25")
-    points, rng = random_points(3), np.random.default_rng(3)
+    points, rng = random_points(seed), np.random.default_rng(seed)
     wanted = replace(judge.aim, tips=judge.tips([points])[0])
     judge = replace(judge, aim=wanted)
     x, y = np.stack([points.x, points.y]) + rng.normal(0, 0.3, (2, len(points)))
     start = judged(judge, FeaturePoints(x, y, points.type))
     best, settled, _ = descended(judge, start, Limits(150, 1e9, 0.05))
     assert settled
-    assert best.loss < 0.1 < 1e-2 * start.loss
+    assert best.loss <= 0.05 < 1e-3 * start.loss
