@@ -86,13 +86,15 @@ def _draw(
     ends = max(of(marks[-1]) for marks in runs)
     along = np.geomspace(max(begins, 1e-3), max(ends, begins, 1e-3), POINTS)
     losses = np.array([_steps(marks, of, along) for marks in runs])
-    middle = np.median(losses, axis=0)
-    emphasis = 4 if method in OURS else 2
-    axes.fill_between(
-        along, losses.min(axis=0), losses.max(axis=0), color=look["color"], alpha=0.1, lw=0
-    )
-    axes.plot(along, middle, label=NAMES.get(method, method), zorder=emphasis, **look)
-    axes.plot(along[-1], middle[-1], "o", ms=4, color=look["color"], zorder=emphasis + 1)
+    changes = np.any(np.diff(losses, axis=1), axis=0)
+    kept = np.concatenate([[True], changes[:-1], [True]])  # a small file: flat parts are one line
+    along, losses = along[kept], losses[:, kept]
+    low, middle, high = losses.min(axis=0), np.median(losses, axis=0), losses.max(axis=0)
+    emphasis, colour = 4 if method in OURS else 2, look["color"]
+    axes.fill_between(along, low, high, color=colour, alpha=0.1, lw=0, step="post")
+    name = NAMES.get(method, method)
+    axes.plot(along, middle, label=name, zorder=emphasis, drawstyle="steps-post", **look)
+    axes.plot(along[-1], middle[-1], "o", ms=4, color=colour, zorder=emphasis + 1)
 
 
 def _steps(marks: Sequence[Mark], of: Callable[[Mark], float], along: FloatArray) -> FloatArray:

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.arrays import FloatArray, LabelArray
 from beamopt.refine.fragments import Fragments, fragments_of, kinds_of, moments_of_kinds, retype
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
@@ -33,20 +32,6 @@ def assert_same(grid: PolarGrid, raw: FloatArray, points: FeaturePoints, walls: 
     assert (np.abs(raw - expected) <= rounding(grid)).all()
 
 
-@compiled
-def flip_all(
-    fragments: Fragments,
-    types: LabelArray,
-    kinds: LabelArray,
-    raw: FloatArray,
-    which: IndexArray,
-    news: LabelArray,
-) -> None:
-    for k in range(which.size):
-        types[which[k]] = news[k]
-        retype(fragments, types, kinds, raw, which[k])
-
-
 def flipped(
     fragments: Fragments, points: FeaturePoints, count: int, seed: int
 ) -> tuple[LabelArray, LabelArray, FloatArray]:
@@ -55,8 +40,10 @@ def flipped(
     types = points.type.copy()
     kinds = kinds_of(fragments, types)
     raw = moments_of_kinds(fragments, kinds)
-    which = rng.integers(0, len(points), count)
-    flip_all(fragments, types, kinds, raw, which, rng.integers(0, 4, count).astype(np.uint8))
+    which, news = rng.integers(0, len(points), count), rng.integers(0, 4, count)
+    for point, new in zip(which.tolist(), news.tolist(), strict=True):
+        types[point] = new
+        retype(fragments, types, kinds, raw, point)
     return types, kinds, raw
 
 
