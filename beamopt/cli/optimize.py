@@ -82,7 +82,7 @@ def _report(result: Optimisation, folder: Path) -> None:
     if result.refinement is not None:
         lines += refinement_lines(result.refinement, result.scene, result.bound)
     lines += _rejected(result)
-    lines.append(("time", f"{result.seconds:.2f} s"))
+    lines.append(("time", _times(result)))
     lines.append(("files", f"{folder}/ ({', '.join(_worth_a_look(folder))}, …)"))
     for warning in result.target.warnings:
         console.print(f"[yellow]note[/]: {warning}")
@@ -106,6 +106,12 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
         *_total(result),
         ("islands", f"{pieces.islands} of material; chambers per supply {chambers}"),
     ]
+
+
+def _times(result: Optimisation) -> str:
+    found = result.refinement
+    refining = "" if found is None else f" searching, {found.seconds:.2f} s refining"
+    return f"{result.seconds:.2f} s{refining}"
 
 
 def _total(result: Optimisation) -> list[tuple[str, str]]:

@@ -27,7 +27,7 @@ TIMES = {"random-section": MOST, "hand-drawn-workspace": MOST, "sealed-section":
 """The budget in searches of the paper's; a sealed section takes many times as long to judge."""
 
 TIMES_OF = {"refine": MOST, "GA, then refine": MOST, "memetic GA": 1}
-"""Two that end by themselves, long before; one that takes as long as four searches of the others."""
+"""Two that end by themselves, long before; one that takes as long for it as others for four."""
 
 Curves = Mapping[str, Sequence[Sequence[Mark]]]
 """Of each method, the marks of each seed."""

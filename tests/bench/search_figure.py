@@ -43,7 +43,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 
 OURS = ("refine", "GA, then refine", "memetic GA")
 NAMES = {"CMA-ES": "CMA-ES on L + K"} | {method: f"ours: {method}" for method in OURS}
-POINTS = 400  # along a line
+POINTS = 200  # along a line
 
 Panels = Sequence[tuple[str, float, Mapping[str, Sequence[Sequence[Mark]]]]]
 
@@ -64,7 +64,8 @@ def search_figure(panels: Panels, papers: int, second: float) -> Figure:
         ):
             for method, runs in curves.items():
                 _draw(axes, method, runs, of)
-            axes.set(xscale="log", yscale="log", title=scene)
+            axes.set(xscale="log", yscale="log")
+            axes.set_title(scene, loc="left")
             axes.grid(True)
             _draw_bound(axes, bound)
             said = f"{papers:,} sections" if axes is left else f"{second:g} s"
@@ -108,8 +109,8 @@ def _draw_budget(axes: Axes, at: float, said: str) -> None:
     """Where methods are compared."""
     axes.axvline(at, color=DESIGN_COLOUR, lw=0.8, ls=DOTTED, zorder=1)
     place = {"xy": (at, 1.0), "xycoords": ("data", "axes fraction")}
-    offset = {"xytext": (-3, -2), "textcoords": "offset points", "ha": "right", "va": "top"}
-    axes.annotate(said, **place, **offset, rotation=90, fontsize=7.5, color=DESIGN_COLOUR)
+    offset = {"xytext": (0, 2), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+    axes.annotate(said, **place, **offset, fontsize=7.5, color=DESIGN_COLOUR)
 
 
 def _draw_bound(axes: Axes, bound: float) -> None:

@@ -52,6 +52,16 @@ def test_all_flips_are_shared_out(flips: int, walks: int) -> None:
     assert abs(schedule.flips_of(walks // 2) - flips / walks) < 1
 
 
+def test_no_flip_is_lost_in_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten flips in four chains are ten draws, and three in fifty are three."""
+    drawn = list[int]()
+    monkeypatch.setattr(annealing, "walk", lambda *given: float(drawn.append(len(given[-1])) or 0))
+    for flips, walks in ((10, 4), (3, 50)):
+        drawn.clear()
+        annealed(judge_of(), random_points(0), Schedule(flips, walks, 10.0, 1.0))
+        assert (sum(drawn), len(drawn)) == (flips, walks)
+
+
 def test_it_cools_geometrically() -> None:
     schedule = Schedule(100, 5, 160.0, 10.0)
     np.testing.assert_allclose(list(map(schedule.temperature, range(5))), [160, 80, 40, 20, 10])

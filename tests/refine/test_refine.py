@@ -221,6 +221,23 @@ def test_a_k_above_the_first_never_takes_the_place_of_one_below(
     assert found.after == good.verdict
 
 
+def test_the_k_that_counts_is_that_of_the_section_as_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Material along a mirror line brings K down; without it a loss of nothing is not enough."""
+    judge, symmetry = judge_of(), mirror_symmetry()
+    near, line = symmetry.symmetrised(random_points(6)), np.linspace(11.0, 24.0, 12)
+    x, y = np.concatenate([near.x, line, -line]), np.append(near.y, np.zeros(24))
+    points = FeaturePoints(x, y, np.append(near.type, np.zeros(24, dtype=np.uint8)))
+    alone = judged(judge, with_cells(points, symmetry))
+    assert judge([points])[0].K < alone.verdict.K
+    ideal = replace(alone, verdict=replace(alone.verdict, L=0.0))
+    monkeypatch.setattr(room, "descend", lambda *_: (ideal, 1, True))
+    found = refine(judge, points, SHORT, symmetry=symmetry)
+    assert found.status is RefineStatus.UNCHANGED
+    assert found.points is points
+
+
 def test_sealed_sections_end_on_their_outline() -> None:
     scene, judge = scene_of("sealed-section", *SMALL), judge_of("sealed-section")
     found = refine(judge, random_points(10), SHORT)
