@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from beamopt.design import Design
 from beamopt.errors import InputError
+from beamopt.outline.faults import Fault
 from beamopt.refine.refine import Refined, RefineStatus, StageRecord, refine
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
@@ -20,13 +21,18 @@ __all__ = ["Refinement", "refine_design", "refine_points"]
 class Refinement:
     """A refined design.
 
-    design : never worse than the one before in L + R nor in the neighbour ratio.
+    design : never worse than the one before in L + R nor in K.
     refined : how it came about. seconds : time it took.
     """
 
     design: Design
     refined: Refined
     seconds: float
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """What is wrong with the outline of a sealed design."""
+        return tuple(self.design.outline.faults) if self.design.seal.rules.sealed else ()
 
 
 def refine_design(

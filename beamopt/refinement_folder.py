@@ -5,12 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from beamopt.answers import Answers
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.refinement import Refinement
-from beamopt.result_tables import tips_table_csv
+from beamopt.result_tables import paths_csv, tips_table_csv
 from beamopt.scene import Scene
 from beamopt.target import Target
 
@@ -20,6 +19,7 @@ REFINEMENT_FILES = (
     "refined.json",
     "refinement.csv",
     "refined_tips.csv",
+    "refined_paths.csv",
     "refined.svg",
     "refined.png",
 )
@@ -34,9 +34,14 @@ def write_refinement(
     write_atomic(folder / "refinement.csv", stages_csv(found))
     if found.refined.after.status is not Status.JUDGED:
         return
-    answers = _answers(scene, target, found)
+    question = scene.judge(target).question
     if len(target.aim):
+        answers = question.of_section(found.design.values)[0]
         write_atomic(folder / "refined_tips.csv", tips_table_csv(target.aim, answers))
+    if target.paths:
+        counts = [len(path) for path in target.paths]
+        reached = question.reach(found.design.values)
+        write_atomic(folder / "refined_paths.csv", paths_csv(reached, counts))
     if figures:
         from beamopt.plot.figures import design_figure, design_title
         from beamopt.plot.style import save_figure
@@ -55,10 +60,6 @@ def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refi
     write_atomic(folder / "provenance.json", json_text(provenance()))
 
 
-def _answers(scene: Scene, target: Target, found: Refinement) -> Answers:
-    return scene.judge(target).question.of_section(found.design.values)[0]
-
-
 def stages_csv(found: Refinement) -> str:
     """What every stage ended in: sections judged so far, L, K, R [mm²]."""
     rows = [
@@ -71,18 +72,19 @@ def stages_csv(found: Refinement) -> str:
 
 def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
     """How it ended and what it changed, without times."""
-    refined, weight = found.refined, scene.search.neighbour_weight
+    refined, rules = found.refined, scene.making.rules_set
     return {
         "status": refined.status.value,
-        "before": _losses(refined.before, weight),
-        "after": _losses(refined.after, weight),
+        "before": _losses(refined.before, refined.ratio_before, rules),
+        "after": _losses(refined.after, refined.ratio, rules),
+        "faults": [str(fault) for fault in found.faults],
         "evaluations": refined.evaluations,
         "flips": refined.flips,
     }
 
 
-def _losses(verdict: Verdict, weight: float) -> dict[str, Any]:
+def _losses(verdict: Verdict, ratio: float, rules: bool) -> dict[str, Any]:
     if verdict.status is not Status.JUDGED:
         return {"status": verdict.status.value}
-    ratio = {"neighbour_ratio": verdict.K / weight} if weight > 0 else {}
-    return {"L": verdict.L, "K": verdict.K, "T": verdict.T, **ratio}
+    ruled = {"R": verdict.R} if rules else {}
+    return {"L": verdict.L, "K": verdict.K, **ruled, "T": verdict.T, "neighbour_ratio": ratio}

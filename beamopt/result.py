@@ -31,8 +31,8 @@ class Optimisation:
 
     status : why it stopped.
     scene, target : what was searched for.
-    best : the design with the lowest L of all that were judged.
-    final : the design with the lowest L in the last population, the paper's result.
+    best : the design with the lowest L + R of all that were judged.
+    final : the design with the lowest L + R in the last population, the paper's result.
     history : one record a generation, the initial population first.
     seconds : time that the search took.
     refinement : of the best design, where the scene asks for it and there was one.

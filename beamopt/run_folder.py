@@ -144,7 +144,10 @@ class RunFolder:
                 if figures:
                     self._draw(result)
         refinement = result.refinement
-        if refinement is not None:
+        if refinement is None:  # what is there belongs to an earlier best
+            for name in REFINEMENT_FILES:
+                (self.path / name).unlink(missing_ok=True)
+        else:
             write_refinement(self.path, result.scene, result.target, refinement, figures=figures)
         write_atomic(self.path / "summary.json", json_text(summary(result)))
         timing = [

@@ -57,5 +57,5 @@ class Refining(Model):
     rounds: Count = quantity(6, "most rounds; fewer where moving points settles", low=1, high=1000)
     good_enough: Number = quantity(0.05, "a loss with nothing left to refine", unit="mm²", low=0)
     ratio_enough: Number = quantity(
-        0.75, "share of the first neighbour ratio that is low enough", low=0, high=1
+        0.65, "share of the first neighbour ratio that is low enough", low=0, high=1
     )

@@ -2,8 +2,10 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import beamopt
@@ -13,6 +15,7 @@ from beamopt.errors import InputError
 from beamopt.folder import design_file
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus
+from beamopt.refine.truth import View, judged_on
 from beamopt.refinement import refine_design
 from beamopt.refinement_folder import REFINEMENT_FILES
 from beamopt.result import Optimisation
@@ -36,7 +39,8 @@ def test_a_search_that_ends_by_refining_keeps_both_designs(finished) -> None:
     found = result.refinement
     assert found is not None
     assert found.refined.status is RefineStatus.REFINED
-    assert set(REFINEMENT_FILES) <= {path.name for path in folder.iterdir()}
+    held = {path.name for path in folder.iterdir()}
+    assert set(REFINEMENT_FILES) - {"refined_paths.csv"} <= held
     best, refined = load_design(folder / "best.json"), load_design(folder / "refined.json")
     aim = result.target.aim
     assert float(aim.loss(best.workspace.tips)) == pytest.approx(result.verdict.L)
@@ -157,3 +161,82 @@ def test_a_drawing_has_no_points_to_refine() -> None:
     design = load_design(str(scene.target.file))
     with pytest.raises(InputError, match="drawn chambers have none to move"):
         refine_design(design, scene)
+
+
+def test_a_search_that_goes_on_drops_what_was_refined_of_an_earlier_best(tmp_path: Path) -> None:
+    folder, keys = tmp_path / "run", [*KEYS, *SHORT]
+    optimize(load_scene("hand-drawn-workspace", [*keys, "refine.finish=true"]), folder)
+    assert design_file(folder).name == "refined.json"
+    longer = load_scene("hand-drawn-workspace", [*keys, "search.generations=5"])
+    optimize(longer, folder, resume=True, figures=False)
+    assert not {path.name for path in folder.iterdir()} & set(REFINEMENT_FILES)
+    assert design_file(folder).name == "best.json"
+
+
+def test_a_search_that_was_stopped_is_not_gone_on_with(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "run"
+    words = ["optimize", "hand-drawn-workspace", "--out", str(folder), *SETTINGS]
+    assert run([*words, "--set=stop.seconds=0.0"]) == 0
+    before = content(folder)
+    assert run(["refine", str(folder)]) == 2
+    said = capsys.readouterr().err
+    assert "the time allowed is used up" in said
+    assert "--resume" in said
+    assert content(folder) == before
+
+
+def test_without_a_weight_the_ratio_is_still_told() -> None:
+    scene = load_scene("random-section", [*KEYS, *SHORT, "search.neighbour_weight=0.0"])
+    design = scene.design_of(scene.random_points(np.random.default_rng(3)))
+    found = refine_design(design, scene).refined
+    assert found.ratio_before > 0
+    assert found.ratio > 0
+    assert found.after.L <= found.before.L
+
+
+@pytest.mark.parametrize("rounds", ["refine.rounds=2", "refine.flips=0"])
+def test_a_design_is_made_as_symmetric_as_the_scene_asks(rounds: str) -> None:
+    keys = [*KEYS, *SHORT, 'making.symmetry="mirror"', "refine.steps=0", rounds]
+    scene = load_scene("random-section", keys)
+    lopsided = scene.design_of(scene.random_points(np.random.default_rng(3)))
+    found = refine_design(lopsided, scene)
+    symmetry = scene.making.repair(scene.grid.build())
+    assert symmetry is not None
+    points = found.refined.points
+    assert points.digest == symmetry.symmetrised(points).digest
+
+
+def test_chambers_are_counted_on_the_outline_where_that_counts() -> None:
+    keys = ["seal.skin=1.0", "seal.wall=0.9", "making.chambers=[9, 9, 9]", *KEYS]
+    scene = load_scene("random-section", keys)
+    judge = scene.judge(scene.load_target())
+    differ = 0
+    for seed in range(12):
+        points = scene.random_points(np.random.default_rng(seed))
+        outline = scene.design_of(points).outline
+        counts = [sum(one.supply == k for one in outline.chambers) for k in (1, 2, 3)]
+        raster = judge.measured([points]).chambers[0].tolist()
+        differ += counts != raster
+        tight = replace(judge, making=replace(judge.making, chambers=tuple(counts), rejects=True))
+        assert judged_on(tight, View.OUTLINE)(points).found
+        fewer = tuple(max(count - 1, 0) for count in counts)
+        tight = replace(judge, making=replace(judge.making, chambers=fewer, rejects=True))
+        assert judged_on(tight, View.OUTLINE)(points).found == (counts == list(fewer))
+    assert differ > 0
+
+
+def test_a_refined_design_says_how_it_follows_trajectories_and_what_rules_weigh(
+    tmp_path: Path,
+) -> None:
+    keys = [*KEYS, *SHORT, "refine.finish=true", "refine.rounds=1", "making.mass_weight=1.0"]
+    result = optimize(load_scene("spiral", keys), tmp_path / "run", figures=False)
+    found = result.refinement
+    assert found is not None
+    rows = list(csv.DictReader((tmp_path / "run" / "refined_paths.csv").read_text().splitlines()))
+    squares = sum(float(row["distance_mm"]) ** 2 for row in rows)
+    assert squares == pytest.approx(found.refined.after.L)
+    said = json.loads((tmp_path / "run" / "summary.json").read_text())["refinement"]
+    assert said["after"]["R"] == found.refined.after.R > 0
+    assert said["faults"] == []

@@ -13,7 +13,9 @@ from beamopt.cli.bound import gap_text
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
+from beamopt.model import read_json
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord
 from beamopt.refinement import Refinement, refine_design
@@ -34,7 +36,12 @@ def refine_command(
         scene, found, bound, folder = _refined_file(subject, scene_name, out, overrides)
     console.print(f"[bold]{scene.name}[/], seed {scene.search.seed}")
     lines = [*refinement_lines(found, scene, bound), ("time", f"{found.seconds:.2f} s")]
-    for name, text in (*lines, ("files", f"{folder}/ (refined.json, refined.png, …)")):
+    there = [
+        name
+        for name in ("refined.json", "refined.png", "refined_paths.csv")
+        if (folder / name).exists()
+    ]
+    for name, text in (*lines, ("files", f"{folder}/ ({', '.join(there)}, …)")):
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
         raise typer.Exit(1)
@@ -52,12 +59,27 @@ def _refined_run(
             raise InputError("--set", "", override, "a key of [refine]; the rest is the run's")
     if not (run / "scene.toml").exists():
         raise InputError(run, "", None, "no run folder: it has no scene.toml")
+    _check_ended(run)
     scene = load_scene(run / "scene.toml", [*overrides, "refine.finish=true"])
     with stages_shown(scene) as show:
         result = optimize(scene, run, resume=True, refining=show)
+    if result.status is StopReason.INTERRUPTED:
+        raise KeyboardInterrupt
     if result.refinement is None:
         raise InputError(run, "", None, f"no design to refine: {result.status.value}")
     return scene, result.refinement, result.bound
+
+
+def _check_ended(run: Path) -> None:
+    """Refuse a run whose search would go on."""
+    summary = run / "summary.json"
+    said = read_json(summary).get("status") if summary.exists() else "not ended"
+    if said in ("not ended", StopReason.INTERRUPTED.value, StopReason.SECONDS.value):
+        allowed = (
+            "a search that ended: go on with it by `beamopt optimize --resume`, or refine its "
+            f"{run / 'best.json'} with --scene {run / 'scene.toml'}"
+        )
+        raise InputError(summary, "status", said, allowed)
 
 
 def _refined_file(
@@ -92,7 +114,7 @@ def stages_shown(scene: Scene) -> Iterator[Callable[[StageRecord], None]]:
 
 def refinement_lines(found: Refinement, scene: Scene, bound: Certificate) -> list[tuple[str, str]]:
     """What a refinement came to, for people."""
-    refined, weight = found.refined, scene.search.neighbour_weight
+    refined = found.refined
     if refined.status is not RefineStatus.REFINED:
         return [("refined", refined.status.value)]
     before, after = refined.before, refined.after
@@ -100,8 +122,9 @@ def refinement_lines(found: Refinement, scene: Scene, bound: Certificate) -> lis
         ("refined L", f"{after.L:.6g} mm²   (before: {before.L:.6g})"),
         ("bound", gap_text(bound, after.L)),
     ]
-    if weight > 0:
-        said = f"{after.K / weight:.3f}   (before: {before.K / weight:.3f})"
-        lines.append(("ratio", said))
+    if scene.making.rules_set:
+        lines.append(("refined R", f"{after.R:.6g} mm²   (before: {before.R:.6g})"))
+    lines.append(("ratio", f"{refined.ratio:.3f}   (before: {refined.ratio_before:.3f})"))
+    lines += [("note", str(fault)) for fault in found.faults]
     judged = f"{refined.evaluations} sections judged, {refined.flips:,} flips proposed"
     return [*lines, ("refinement", judged)]

@@ -26,7 +26,7 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["SLACK", "build_outline", "outline_moments"]
+__all__ = ["SLACK", "build_outline"]
 
 SLACK = 0.02
 """mm; skins, walls and necks may be thinner than asked by this and twice the sagitta: chords of
@@ -90,13 +90,6 @@ def build_outline(
         faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
     faults += topology(pieces, regions)
     return Outline(pieces, _chambers(regions), worst_first(faults), moments)
-
-
-def outline_moments(
-    grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules
-) -> Moments:
-    """Moments of the outline alone, the same as `build_outline` gives, without measuring walls."""
-    return build_outline(grid, source, rules, inspected=False).moments
 
 
 def _smooth(

@@ -28,6 +28,8 @@ from beamopt.section.neighbours import neighbours_of
 
 __all__ = ["Schedule", "anneal"]
 
+AT_ONCE = 100_000  # flips whose random numbers are drawn together
+
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
@@ -72,16 +74,12 @@ def anneal(
     here, best, judged = start, None, 0
     for chain in range(schedule.walks):
         temperature = schedule.temperature(chain)
-        types = here.points.type.copy()
-        total = walk(
-            types,
-            _left_out(fragments, here),
-            here.verdict.T - here.verdict.R,
-            temperature,
-            flips,
-            _arc_aim(judge, here),
-            rng.random((schedule.flips_of(chain), 4)),
-        )
+        types, total = here.points.type.copy(), here.verdict.T - here.verdict.R
+        about = temperature, flips, _arc_aim(judge, here)
+        added = _left_out(fragments, here)
+        for begin in range(0, schedule.flips_of(chain), AT_ONCE):
+            draws = rng.random((min(AT_ONCE, schedule.flips_of(chain) - begin), 4))
+            total = walk(types, added, total, *about, draws)
         luck = rng.random()
         if np.array_equal(types, here.points.type):
             continue

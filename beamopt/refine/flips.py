@@ -12,7 +12,7 @@ from beamopt.refine.arc_loss import ArcAim, arc_loss
 from beamopt.refine.fragments import Fragments, kinds_of, moments_of_kinds, retyped
 from beamopt.refine.orbits import Orbits
 
-__all__ = ["Flips", "flip", "walk"]
+__all__ = ["Flips", "walk"]
 
 
 class Flips(NamedTuple):
@@ -89,17 +89,6 @@ def walk(
                 retyped(fragments, types, kinds, raw, members[generator, image])
             raw[:] = before
     return float(total)
-
-
-@compiled
-def flip(
-    types: LabelArray, kinds: LabelArray, raw: FloatArray, generator: int, new: int, flips: Flips
-) -> None:
-    """Give a generator another type and its images theirs, in place: O(1) in the moments."""
-    for image in range(flips.orbits.members.shape[1]):
-        types[flips.orbits.members[generator, image]] = flips.orbits.types[image, new]
-    for image in range(flips.orbits.members.shape[1]):
-        retyped(flips.fragments, types, kinds, raw, flips.orbits.members[generator, image])
 
 
 @inlined

@@ -57,14 +57,17 @@ class Refined:
     """What a refinement came to.
 
     before, after : verdicts on what counts, the outline where it is sealed, else the raster; the
-    loss L + R and the neighbour ratio after it are never above those before.
-    flips : proposed to the model.
+    loss L + R and K after it are never above those before, and so, where λ is not 0, neither is
+    the neighbour ratio.
+    ratio_before, ratio : neighbour ratios. flips : proposed to the model.
     """
 
     status: RefineStatus
     points: FeaturePoints
     before: Verdict
     after: Verdict
+    ratio_before: float
+    ratio: float
     stages: tuple[StageRecord, ...]
     flips: int
 
@@ -92,7 +95,7 @@ def refine(
     ----------
     judge : what sections are judged with. points : to start from.
     settings : how long, how hot; the defaults of a scene if left out.
-    symmetry : that `points` have, and keep.
+    symmetry : that sections are to have; other points are made symmetric before anything else.
     callback : called after each stage.
 
     Raises
@@ -102,10 +105,12 @@ def refine(
     settings = settings or Refining()
     sealed = judge.rules.sealed
     counts = judged_on(judge, View.OUTLINE if sealed else View.RASTER)
+    if symmetry is not None:
+        points = with_cells(points, symmetry)
     before = counts(points)
     if not before.found:
         nothing = (StageRecord(Stage.START, 0, 1, before.verdict),)
-        return Refined(RefineStatus.NOT_JUDGED, points, before.verdict, before.verdict, nothing, 0)
+        return _refined(RefineStatus.NOT_JUDGED, before, before, nothing, 0)
     work = _Work(judge, settings, seed, symmetry, callback)
     work.evaluations = 1  # that before
     best = work.rounds(points)
@@ -114,10 +119,18 @@ def refine(
     better = best.loss <= before.loss and best.verdict.K <= before.verdict.K
     better = better and (best.loss < before.loss or best.verdict.K < before.verdict.K)
     status = RefineStatus.REFINED if better else RefineStatus.UNCHANGED
-    after = best if better else before
-    return Refined(
-        status, after.points, before.verdict, after.verdict, tuple(work.stages), work.flips
-    )
+    return _refined(status, before, best if better else before, tuple(work.stages), work.flips)
+
+
+def _refined(
+    status: RefineStatus,
+    before: Judged,
+    after: Judged,
+    stages: tuple[StageRecord, ...],
+    flips: int,
+) -> Refined:
+    ratios = before.ratio, after.ratio
+    return Refined(status, after.points, before.verdict, after.verdict, *ratios, stages, flips)
 
 
 def improved(

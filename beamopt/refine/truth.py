@@ -12,7 +12,7 @@ from beamopt.aim import Aim
 from beamopt.answers import Answers
 from beamopt.judge import Judge, Status, Verdict
 from beamopt.rod.ladder import SectionValues
-from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.feature_points import SUPPLIES, FeaturePoints
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes
 
@@ -31,7 +31,8 @@ class Judged:
     """A section that was judged.
 
     section : what the rod knows of it. aim : what its tips should be, points of paths as rows at
-    the pressures that were found best. answers : its tips, and where they point.
+    the pressures that were found best. answers : its tips, and where they point. ratio : its
+    neighbour ratio.
     """
 
     points: FeaturePoints
@@ -39,6 +40,7 @@ class Judged:
     section: SectionValues
     aim: Aim
     answers: Answers
+    ratio: float
 
     @property
     def found(self) -> bool:
@@ -56,14 +58,21 @@ Truth = Callable[[FeaturePoints], Judged]
 
 
 def judged_on(judge: Judge, view: View) -> Truth:
-    """What judges feature points on their raster, or on the moments of their outline."""
-    from beamopt.outline.build import outline_moments
+    """What judges feature points on their raster, or on their outline: moments and chambers.
+
+    How symmetric a section is, is measured on the raster in any case.
+    """
+    from beamopt.outline.build import build_outline
 
     def truth(points: FeaturePoints) -> Judged:
         measured = judge.measured([points])
         if view is View.OUTLINE:
-            smooth = outline_moments(judge.grid, points, judge.rules)
-            measured = replace(measured, moments=Moments(smooth.raw[None]))
+            outline = build_outline(judge.grid, points, judge.rules, inspected=False)
+            measured = replace(measured, moments=Moments(outline.moments.raw[None]))
+            if judge.making.counts_chambers:
+                found = [chamber.supply for chamber in outline.chambers]
+                chambers = np.array([[found.count(supply) for supply in SUPPLIES]])
+                measured = replace(measured, chambers=chambers)
         return _judged(judge, points, measured)
 
     return truth
@@ -71,12 +80,14 @@ def judged_on(judge: Judge, view: View) -> Truth:
 
 def _judged(judge: Judge, points: FeaturePoints, measured: Phenotypes) -> Judged:
     verdict = judge.verdicts(measured, [len(points)])[0]
+    ratio = float(measured.neighbour_ratio[0])
     if verdict.status is not Status.JUDGED:
         nothing = Answers(np.zeros((0, 3)))
-        return Judged(points, verdict, SectionValues(Moments(np.zeros((4, 6)))), judge.aim, nothing)
+        unknown = SectionValues(Moments(np.zeros((4, 6))))
+        return Judged(points, verdict, unknown, judge.aim, nothing, ratio)
     section = judge.values(measured, 0)
     aim = judge.settled(section)
-    return Judged(points, verdict, section, aim, answers_to(judge, aim, section))
+    return Judged(points, verdict, section, aim, answers_to(judge, aim, section), ratio)
 
 
 def answers_to(judge: Judge, aim: Aim, section: SectionValues) -> Answers:

@@ -14,7 +14,7 @@ from beamopt.plot.study import refined_figure
 from beamopt.plot.style import save_figure
 from beamopt.scene import load_scene
 from beamopt.study.plan import COMBINATIONS, Plan
-from beamopt.study.table import Outcome, RefinedOutcome, targets_of, title
+from beamopt.study.table import Outcome, RefinedOutcome, row, targets_of, title
 
 __all__ = ["write_refined"]
 
@@ -111,8 +111,8 @@ def _shares(some: Sequence[Outcome]) -> list[float]:
 
 def _markdown(outcomes: Sequence[Outcome], bounds: dict[str, Certificate], plan: Plan) -> str:
     lines = [
-        _row(["target", "combination", "bound [mm²]", *COLUMNS]),
-        _row(["---", "---", *["---:"] * (1 + len(COLUMNS))]),
+        row(["target", "combination", "bound [mm²]", *COLUMNS]),
+        row(["---", "---", *["---:"] * (1 + len(COLUMNS))]),
     ]
     for target, bound in bounds.items():
         low = _lowest(bound)
@@ -121,18 +121,14 @@ def _markdown(outcomes: Sequence[Outcome], bounds: dict[str, Certificate], plan:
         for combination in (*COMBINATIONS, "all"):
             some = [one for one in mine if combination in (one.run.combination, "all")]
             cells = [make(some) for make in COLUMNS.values()] if some else [""] * len(COLUMNS)
-            lines.append(_row([title(target), combination, said, *cells]))
+            lines.append(row([title(target), combination, said, *cells]))
     table = "\n".join(lines)
     return f"""# The best design of each search, refined
 
-`L before` is the lowest L that the search ever judged, of the outline where sections are sealed;
+`L before` is that of the best design that the search ever judged, of its outline where sealed;
 `bound` is what chambers in the ring can have at best (numerical; `bounds.csv` has the others).
 Ratios are neighbour ratios. How long the searches and their refinements took stands in
 `timing.csv`. Made by `{plan.command} --out DIR`.
 
 {table}
 """
-
-
-def _row(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cells) + " |"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
@@ -18,7 +17,6 @@ from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
 from beamopt.refinement import Refinement
-from beamopt.scene import Scene
 from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import processes
 from beamopt.study.report import names, write_report
@@ -96,15 +94,20 @@ def run_one(run: Run, folder: Path) -> Outcome:
         result.evaluations,
         tuple(record.best.verdict.L for record in result.history),
         result.seconds,
-        None if result.refinement is None else _refined(result.refinement, result.scene),
+        None if result.refinement is None else _refined(result.refinement),
     )
 
 
-def _refined(found: Refinement, scene: Scene) -> RefinedOutcome:
-    before, after = found.refined.before, found.refined.after
-    weight = scene.search.neighbour_weight or math.inf
-    ratios = before.K / weight, after.K / weight
-    return RefinedOutcome(before.L, after.L, *ratios, found.refined.evaluations, found.seconds)
+def _refined(found: Refinement) -> RefinedOutcome:
+    refined = found.refined
+    return RefinedOutcome(
+        refined.before.L,
+        refined.after.L,
+        refined.ratio_before,
+        refined.ratio,
+        refined.evaluations,
+        found.seconds,
+    )
 
 
 def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outcome]:

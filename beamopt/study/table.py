@@ -16,6 +16,7 @@ __all__ = [
     "Outcome",
     "RefinedOutcome",
     "comparison_markdown",
+    "row",
     "table_csv",
     "table_markdown",
     "targets_of",
@@ -115,28 +116,28 @@ def table_markdown(outcomes: Sequence[Outcome]) -> str:
     ]
     losses = {c: [one.final.L for one in _of(outcomes, *c)] for c in columns}
     head = ["It."] + [f"{title(target)} {combination}" for target, combination in columns]
-    lines = [_row(head), _row(["---"] + ["---:"] * len(columns))]
+    lines = [row(head), row(["---"] + ["---:"] * len(columns))]
     lines += [
-        _row([str(k + 1)] + [f"{losses[c][k]:.2f}" for c in columns])
+        row([str(k + 1)] + [f"{losses[c][k]:.2f}" for c in columns])
         for k in range(len(losses[columns[0]]))
     ]
     for name, summarise in SUMMARIES.items():
         values = {c: summarise(losses[c]) for c in columns}
-        lines.append(_row([f"**{name}**"] + [_marked(c, values) for c in columns]))
+        lines.append(row([f"**{name}**"] + [_marked(c, values) for c in columns]))
     return "\n".join(lines) + "\n"
 
 
 def comparison_markdown(outcomes: Sequence[Outcome]) -> str:
     """L over all runs of each target, beside the paper's."""
-    lines = [_row(["Target", "Runs", *(f"{name}, here / paper" for name in SUMMARIES)])]
-    lines.append(_row(["---", "---:", *["---:"] * len(SUMMARIES)]))
+    lines = [row(["Target", "Runs", *(f"{name}, here / paper" for name in SUMMARIES)])]
+    lines.append(row(["---", "---:", *["---:"] * len(SUMMARIES)]))
     for target in (target for target in targets_of(outcomes) if target in PAPER):
         losses = [one.final.L for one in outcomes if one.run.target == target]
         pairs = [
             f"{summarise(losses):.2f} / {PAPER[target][name]:.2f}"
             for name, summarise in SUMMARIES.items()
         ]
-        lines.append(_row([title(target), str(len(losses)), *pairs]))
+        lines.append(row([title(target), str(len(losses)), *pairs]))
     return "\n".join(lines) + "\n"
 
 
@@ -150,7 +151,8 @@ def _losses(one: Outcome) -> tuple[float, float, float, int]:
     return one.final.L, one.final.K, one.final.T, one.evaluations
 
 
-def _row(cells: Sequence[str]) -> str:
+def row(cells: Sequence[str]) -> str:
+    """A row of a Markdown table."""
     return "| " + " | ".join(cells) + " |"
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from beamopt.folder import design_file
 from beamopt.model import read_text
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
@@ -74,7 +75,7 @@ def read_search_run(folder: Path) -> SearchRun:
     for key in ("status", "scene", "best.status"):
         summary.text(key)
     summary.number("seed")
-    best = folder / "best.json"
+    best = design_file(folder)
     return SearchRun(
         folder,
         summary,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beamopt.judge import Status
-from beamopt.outline.build import build_outline, outline_moments
+from beamopt.outline.build import build_outline
 from beamopt.refine.truth import View, answers_to, judged_on
 from beamopt.section.feature_points import FeaturePoints
 from tests.refine.cases import SMALL, judge_of, judged, random_points, scene_of
@@ -25,7 +25,7 @@ def test_the_outline_as_it_is_built(name: str) -> None:
     judge = judge_of(name)
     points = random_points(1)
     outline = build_outline(judge.grid, points, judge.rules)
-    alone = outline_moments(judge.grid, points, judge.rules)
+    alone = build_outline(judge.grid, points, judge.rules, inspected=False).moments
     np.testing.assert_array_equal(alone.raw, outline.moments.raw)
     found = judged(judge, points, View.OUTLINE)
     np.testing.assert_array_equal(found.section.moments.raw, outline.moments.raw)
