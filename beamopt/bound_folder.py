@@ -14,30 +14,58 @@ from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
+from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.model import read_json
 from beamopt.provenance import provenance
 from beamopt.scene import Scene
 from beamopt.target import Target
 
-__all__ = ["bound_numbers", "bound_summary", "write_bound"]
+__all__ = ["bound_numbers", "bound_summary", "claim_bound_folder", "write_bound"]
 
+MARKER = "bound.json"
+OF_RESPONSE = ("ideal.csv", "bound.svg", "bound.png")
+FILES = (*OF_RESPONSE, "timing.csv", "provenance.json")  # may be there before the marker
 HEADER = "p1,p2,p3,x,y,z,target_x,target_y,target_z,weight,distance_mm"
 
 
-def write_bound(folder: Path, scene: Scene, target: Target, found: Certificate) -> None:
-    """Write what was found to a folder that is there; each file whole or not at all.
+def claim_bound_folder(folder: Path, scene: Scene) -> None:
+    """Take an empty folder, or that of an earlier bound of a scene of this name.
 
-    Without a bound there are only `bound.json`, which says why, and the provenance.
+    Raises
+    ------
+    InputError : it holds anything else, or can not be made.
     """
+    claim_folder(folder, MARKER, FILES, resume=True)
+    there = folder / MARKER
+    if not there.exists():
+        return
+    kept = read_json(there).get("scene")
+    if kept != scene.name:
+        said = f"is what is there; now asked for: {scene.name}; name another folder"
+        raise InputError(there, "scene", kept, said)
+
+
+def write_bound(folder: Path, scene: Scene, target: Target, found: Certificate) -> None:
+    """Write what was found to a folder that is taken; each file whole or not at all.
+
+    Without a bound there are only `bound.json`, which says why, and the provenance; what an earlier
+    one left is removed.
+    """
+    clear_leftovers(folder, (MARKER, *FILES))
     wanted, response = found.wanted, found.response
-    if wanted is not None and response is not None:
+    if wanted is None or response is None:
+        for name in OF_RESPONSE:
+            (folder / name).unlink(missing_ok=True)
+    else:
         write_atomic(folder / "ideal.csv", _ideal_csv(wanted, response))
         _draw(folder, scene, target, wanted, response)
     timing = [(part, seconds, "s") for part, seconds in found.seconds.items()]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
     write_atomic(folder / "provenance.json", json_text(provenance()))
     numbers = {"scene": scene.name, **bound_numbers(found)}
-    write_atomic(folder / "bound.json", json_text(numbers))
+    write_atomic(folder / MARKER, json_text(numbers))
 
 
 def bound_numbers(found: Certificate) -> dict[str, Any]:
@@ -102,6 +130,7 @@ def _ring(ring: RingBound) -> dict[str, Any]:
         "agrees": ring.agrees,
         "matrix": [row.tolist() for row in ring.matrix],
         "rounds": ring.rounds,
+        "elements": list(ring.elements),
     }
 
 

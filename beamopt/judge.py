@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,9 @@ from beamopt.section.saint_venant import section_saint_venant
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.workspace import pressure_grid
 
-__all__ = ["Judge", "Status", "Verdict", "judge_all"]
+__all__ = ["Judge", "Status", "Verdict", "in_parts", "judge_all"]
+
+Found = TypeVar("Found")
 
 
 class Status(Enum):
@@ -198,8 +201,18 @@ def judge_all(
     workers: int = 1,
 ) -> list[Verdict]:
     """Judge a batch in `workers` parts on any executor; the verdicts do not depend on either."""
+    return in_parts(judge, candidates, executor, workers)
+
+
+def in_parts(
+    judged: Callable[[Sequence[FeaturePoints]], list[Found]],
+    candidates: Sequence[FeaturePoints],
+    executor: Executor | None,
+    workers: int,
+) -> list[Found]:
+    """What `judged` finds of each candidate, in their order, asked in `workers` parts at a time."""
     if executor is None or workers <= 1 or len(candidates) < 2 * workers:
-        return judge(candidates)
+        return judged(candidates)
     bounds = np.linspace(0, len(candidates), workers + 1).astype(int)
     parts = [candidates[a:b] for a, b in pairwise(bounds)]
-    return [verdict for part in executor.map(judge, parts) for verdict in part]
+    return [found for part in executor.map(judged, parts) for found in part]

@@ -19,6 +19,7 @@ from beamopt.evolve.algorithm import Generation
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.judge import Status, Verdict
+from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
 from beamopt.pairs import aim_csv
 from beamopt.provenance import provenance
 from beamopt.reach.reach import TOLERANCE
@@ -28,18 +29,11 @@ from beamopt.result_tables import paths_csv, tips_table_csv
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.target import Target
-from beamopt.target_choice import MOST_PATHS
 
 __all__ = ["RunFolder"]
 
 GOES_ON = {"search.generations", "stop", "refine"}  # keys that may change when a run goes on
 
-SOURCES = {
-    "section": "target-source.json",
-    "workspace": "target-source.csv",
-    "points": "target-source.csv",
-}
-PATHS = tuple(f"target-path-{k}.csv" for k in range(1, MOST_PATHS + 1))
 FIGURES = ("best.svg", "best.png", "convergence.svg", "convergence.png")
 BEGINNING = (
     "journal.jsonl",
@@ -92,7 +86,7 @@ class RunFolder:
         ------
         InputError : the run to go on with has another scene or target.
         """
-        kept, sources = self._scene_to_keep(scene)
+        kept, sources = scene_to_keep(scene)
         if (self.path / "scene.toml").exists():
             self._check_same(kept, sources)
         clear_leftovers(self.path, NAMES)
@@ -101,16 +95,6 @@ class RunFolder:
         if len(target.aim):
             write_atomic(self.path / "target.csv", aim_csv(target.aim))
         write_atomic(self.path / "scene.toml", scene_text(kept))
-
-    def _scene_to_keep(self, scene: Scene) -> tuple[Scene, dict[str, bytes]]:
-        """The scene with its target's files named as they are kept here, and their contents."""
-        chosen = scene.target
-        names = () if chosen.file is None else (SOURCES[chosen.kind],)
-        paths = PATHS[: len(chosen.paths)]
-        files = zip((*names, *paths), chosen.files, strict=True)
-        sources = {name: Path(file).read_bytes() for name, file in files}
-        kept = chosen.model_copy(update={"file": names[0] if names else None, "paths": paths})
-        return scene.model_copy(update={"target": kept}), sources
 
     def _check_same(self, scene: Scene, sources: dict[str, bytes]) -> None:
         """Refuse to go on with another scene's run, naming the first key that differs."""

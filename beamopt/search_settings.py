@@ -50,11 +50,16 @@ class Refining(Model):
     )
     hot: Number = quantity(150.0, "first temperature of the annealing", unit="mm²", low=1e-9)
     cold: Number = quantity(3.0, "last temperature of the annealing", unit="mm²", low=1e-9)
-    steps: Count = quantity(200, "most sections judged while points move", low=0)
+    steps: Count = quantity(60, "most sections judged while points move in a round", low=0)
     outline_steps: Count = quantity(
         40, "most outlines judged in the end, of sealed sections", low=0
     )
-    rounds: Count = quantity(6, "most rounds; fewer where moving points settles", low=1, high=1000)
+    rounds: Count | None = quantity(
+        None,
+        "most rounds, fewer where moving settles; left out: 6, or 16 if sealed",
+        low=1,
+        high=1000,
+    )
     good_enough: Number = quantity(0.05, "a loss with nothing left to refine", unit="mm²", low=0)
     ratio_enough: Number = quantity(
         0.65, "share of the first neighbour ratio that is low enough", low=0, high=1

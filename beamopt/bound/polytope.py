@@ -115,7 +115,10 @@ def least_squares_within(
         raise ValueError("no residuals at the start")
     value = float(found[0] @ found[0])
     for _ in range(MOST_STEPS):
-        step = _step(*found, damping * float((found[1] ** 2).sum()), cuts, point)
+        steepness = float((found[1] ** 2).sum())
+        if steepness == 0:  # nothing moves the residuals
+            break
+        step = _step(*found, damping * steepness, cuts, point)
         trial = None if step is None else residuals(point + step)
         lowered = np.inf if trial is None else float(trial[0] @ trial[0])
         if trial is not None and step is not None and lowered < value:

@@ -39,11 +39,13 @@ class RingMoments:
     whole : (6,) integrals of {1, x, y, x², y², xy} over all of the ring [1, over radius powers].
     elements : (n, 6) the same of every element that may be chamber.
     radius : the unit of length [mm].
+    shape : radial rows and sectors of those elements; of a finer grid M is a little too small.
     """
 
     whole: FloatArray
     elements: FloatArray
     radius: float
+    shape: tuple[int, int]
 
     @classmethod
     def of(
@@ -64,7 +66,7 @@ class RingMoments:
         inside = PolarGrid(inner, outer, *counts, grid.start, grid.stop)
         unit = grid.outer_radius ** -np.array([2.0, 3.0, 3.0, 4.0, 4.0, 4.0])
         whole = _element_moments(grid).sum(axis=0) * unit
-        return cls(whole, _element_moments(inside) * unit, grid.outer_radius)
+        return cls(whole, _element_moments(inside) * unit, grid.outer_radius, counts)
 
     def farthest(self, direction: FloatArray) -> tuple[float, FloatArray]:
         """h(d) and the point (12,) of M where it is attained, for a direction (12,)."""

@@ -7,23 +7,26 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 
+from beamopt.arrays import FloatArray
 from beamopt.bound.certificate import Certificate, Progress, certificate
 from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
-from beamopt.bound_folder import write_bound
+from beamopt.bound_folder import claim_bound_folder, write_bound
 from beamopt.cli.progress import console
 from beamopt.design import load_design
-from beamopt.folder import claim_folder
-from beamopt.model import parse, read_text
+from beamopt.model import parse
 from beamopt.overrides import overridden
 from beamopt.scene import Pressures, Scene, load_scene
 from beamopt.scene_text import scene_text
-from beamopt.target import Target
+from beamopt.table import read_table
+from beamopt.target import COLUMNS, ONLY_OF_POINTS, SAME_PRESSURE, Target
 from beamopt.target_choice import TargetChoice
+from beamopt.workspace import pressure_grid
 
 __all__ = ["bound_command", "gap_text"]
 
@@ -32,40 +35,74 @@ NOTHING = 1e-12  # of H²: less than this is rounding
 
 def bound_command(subject: str, out: Path | None, overrides: Sequence[str]) -> None:
     """Say how low L can be, whatever the section, and write it where asked."""
-    scene = _scene_of(subject, overrides)
+    scene, notes = _scene_of(subject, overrides)
     target = scene.load_target()
     if out is not None:
-        claim_folder(out, "bound.json", resume=False)
+        claim_bound_folder(out, scene)
     with _spinner() as say:
         found = certificate(scene, target, say)
     if out is not None:
         write_bound(out, scene, target, found)
+    for note in (*notes, *target.warnings):
+        console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
 
 
-def _scene_of(subject: str, overrides: Sequence[str]) -> Scene:
-    """A scene; for a table or a design the default one with it as the target."""
+def _scene_of(subject: str, overrides: Sequence[str]) -> tuple[Scene, tuple[str, ...]]:
+    """A scene; for a table or a design the default one with it as the target; and notes on it."""
     path = Path(subject)
     kind = path.suffix.lower()
     if kind not in (".csv", ".json"):
-        return load_scene(subject, overrides)
-    named = {"name": "".join(c if c.isalnum() or c in "-_" else "-" for c in path.stem) or "target"}
+        return load_scene(subject, overrides), ()
+    name = "".join(c if c.isalnum() or c in "-_" else "-" for c in path.stem) or "target"
     if kind == ".csv":
-        read_text(path)  # a file that is not there comes first
-        chosen = TargetChoice(kind="workspace", file=str(path.resolve()))
-        scene = Scene(**named, target=chosen)
-    else:
-        design = load_design(path)
-        scene = Scene(
-            **named,
-            actuator=design.actuator,
-            grid=design.grid,
-            seal=design.seal,
-            pressures=Pressures(levels=design.pressures),
-            rod=design.rod,
-            loads=design.loads,
-            target=TargetChoice(kind="section", file=str(path.resolve())),
-        )
+        return _scene_of_table(path, name, overrides)
+    design = load_design(path)
+    scene = Scene(
+        name=name,
+        actuator=design.actuator,
+        grid=design.grid,
+        seal=design.seal,
+        pressures=Pressures(levels=design.pressures),
+        rod=design.rod,
+        loads=design.loads,
+        target=TargetChoice(kind="section", file=str(path.resolve())),
+    )
+    return _with(scene, overrides), ()
+
+
+def _scene_of_table(
+    path: Path, name: str, overrides: Sequence[str]
+) -> tuple[Scene, tuple[str, ...]]:
+    """The default scene with a table as its target: of points, unless it is a workspace's."""
+    table = read_table(path, COLUMNS)
+    file = str(path.resolve())
+    usual = Scene(name=name, target=TargetChoice(kind="points", file=file))
+    scene = _with(usual, overrides)
+    if any(text.partition("=")[0].strip() == "target.kind" for text in overrides):
+        return scene, ()
+    levels = scene.pressures.levels
+    columns = [column for column in ONLY_OF_POINTS if column in table.header]
+    if not columns and _is_workspace(table.stacked(["p1", "p2", "p3"]), levels):
+        return _with(usual, [*overrides, "target.kind=workspace"]), ()
+    said = f"it has the columns {', '.join(columns)}"
+    if not columns:
+        listed = ", ".join(f"{level:g}" for level in levels)
+        said = f"its rows are not the 27 combinations of {listed} kPa"
+    return scene, (f"taken as a table of points: {said}",)
+
+
+def _is_workspace(pressures: FloatArray, levels: Sequence[float]) -> bool:
+    """Whether pressures (n, 3) are the 27 combinations, in any order."""
+    nodes = pressure_grid(levels)
+    if len(pressures) != len(nodes):
+        return False
+    away = np.abs(pressures[:, None] - nodes).max(axis=2)
+    return bool((away.min(axis=0) < SAME_PRESSURE).all())
+
+
+def _with(scene: Scene, overrides: Sequence[str]) -> Scene:
+    """A scene with keys replaced."""
     if not overrides:
         return scene
     data = overridden(tomllib.loads(scene_text(scene)), overrides)
@@ -84,8 +121,6 @@ def _spinner() -> Iterator[Progress]:
 
 
 def _report(scene: Scene, target: Target, found: Certificate, out: Path | None) -> None:
-    for warning in target.warnings:
-        console.print(f"[yellow]note[/]: {warning}")
     lines: list[tuple[str, str]]
     wanted, response = found.wanted, found.response
     if wanted is None or response is None:
@@ -129,12 +164,13 @@ def _of_rays(proven: RayBound, wanted: Wanted) -> list[tuple[str, str]]:
 
 def _of_ring(ring: RingBound, wanted: Wanted) -> list[tuple[str, str]]:
     low, high = (_area(value, wanted.length) for value in (ring.outer, ring.inner))
+    kind = "numerical, on {} × {} elements".format(*ring.elements)
     if ring.realisable:
         said = "chambers in the ring can have the best response"
-        return [("ring", f"{low}   (numerical: {said})")]
+        return [("ring", f"{low}   ({kind}: {said})")]
     gap = ring.inner - ring.outer
     between = f"a mixture of chambers in the ring reaches {high}, {gap:.2g} mm² more"
-    return [("ring", f"{low}   (numerical: {between})")]
+    return [("ring", f"{low}   ({kind}: {between})")]
 
 
 def gap_text(found: Certificate, loss: float) -> str:

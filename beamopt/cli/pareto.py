@@ -9,6 +9,7 @@ from pathlib import Path
 
 import typer
 
+from beamopt.cli.bound import gap_text
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
@@ -16,7 +17,7 @@ from beamopt.pareto.front import Front
 from beamopt.pareto.run import find_front
 from beamopt.pareto.scores import BEST, chosen_objectives
 from beamopt.pareto.search import FrontRecord
-from beamopt.scene import load_scene
+from beamopt.scene import Scene, load_scene
 
 __all__ = ["pareto_command"]
 
@@ -33,6 +34,10 @@ def pareto_command(
     """Search for a front, show progress, and say what was found and where it is."""
     names = chosen_objectives(objectives)
     scene = load_scene(scene_name, overrides)
+    ignored = _ignored(scene)
+    if ignored:
+        said = f"a search for a front ignores {', '.join(ignored)}"
+        console.print(f"[yellow]note[/]: {said}", soft_wrap=True)
     folder = out or Path("fronts") / f"{scene.name}-{'-'.join(names)}-{scene.search.seed}"
     with progress_bar("generations") as bar, ThreadPoolExecutor(workers) as executor:
         total = scene.search.generations + 1
@@ -67,6 +72,13 @@ def pareto_command(
         raise typer.Exit(1)
 
 
+def _ignored(scene: Scene) -> list[str]:
+    """Keys of a scene that are set, but only to a search for one design."""
+    keys = [f"stop.{name}" for name, value in scene.stop if value is not None]
+    keys += ["search.improved_share"] if scene.search.improved_share > 0 else []
+    return keys + (["refine.finish"] if scene.refine.finish else [])
+
+
 def _not_installed(error: ImportError) -> InputError:
     missing = (error.name or str(error)).partition(".")[0]
     return InputError("", "", None, f"{missing} is not installed: pip install 'beamopt[search]'")
@@ -83,12 +95,14 @@ def _report(front: Front, folder: Path) -> None:
             reached = zip(front.objectives, values[k], strict=True)
             text = ", ".join(f"{name} {value:.4g}" for name, value in reached)
             lines.append((said, f"{text}   (index {k})"))
+        lines.append(("bound", gap_text(front.bound, front.lowest_loss)))
     counts = front.rejected
     if counts:
         lines.append(("not judged", "; ".join(f"{n}: {one.value}" for one, n in counts.items())))
     lines.append(("time", f"{front.seconds:.2f} s"))
     files = [name for name in ("front.csv", "pareto.png") if (folder / name).exists()]
-    lines.append(("files", f"{folder}/ ({', '.join(files)}, front-*.json, …)"))
+    files += ["front-*.json"] if front.designs else []
+    lines.append(("files", f"{folder}/ ({', '.join(files)}, …)"))
     console.print(f"[bold]{front.scene.name}[/], seed {front.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)

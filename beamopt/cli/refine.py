@@ -17,7 +17,7 @@ from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
 from beamopt.model import read_json
 from beamopt.optimisation import optimize
-from beamopt.refine.refine import RefineStatus, StageRecord
+from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
 from beamopt.refinement_folder import write_refined_design
 from beamopt.scene import Scene, load_scene
@@ -103,7 +103,8 @@ def _refined_file(
 def stages_shown(scene: Scene) -> Iterator[Callable[[StageRecord], None]]:
     """A bar of a refinement's rounds; the most there can be."""
     with progress_bar("rounds") as bar:
-        task = bar.add_task("refine", total=scene.refine.rounds, said="starting")
+        most = rounds_of(scene.refine, scene.seal.rules.sealed)
+        task = bar.add_task("refine", total=most, said="starting")
 
         def show(record: StageRecord) -> None:
             said = f"{record.stage.value}: L {record.verdict.L:.4g} mm²"

@@ -4,24 +4,34 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from beamopt.bound_folder import bound_summary
 from beamopt.design import Design
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import clear_leftovers
 from beamopt.judge import Judge, Status
+from beamopt.kept_scene import scene_to_keep
 from beamopt.pareto.front import Front
 from beamopt.pareto.scores import BEST, OBJECTIVES
 from beamopt.provenance import provenance
+from beamopt.scene import Scene
 from beamopt.scene_text import scene_text
 
-__all__ = ["JOURNAL", "front_csv", "write_front"]
+__all__ = ["JOURNAL", "begin_folder", "front_csv", "write_front"]
 
 JOURNAL = "journal.jsonl"
 
 
+def begin_folder(folder: Path, scene: Scene) -> None:
+    """Keep the question beside the journal: the scene, and copies of its target's files."""
+    kept, sources = scene_to_keep(scene)
+    for name, content in sources.items():
+        write_atomic(folder / name, content)
+    write_atomic(folder / "scene.toml", scene_text(kept))
+
+
 def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = True) -> None:
-    """Write table, designs and figure; each whole or not at all."""
+    """Write table, designs and figure to a folder with its question; each whole or not at all."""
     clear_leftovers(folder, None)
-    write_atomic(folder / "scene.toml", scene_text(front.scene))
     designs = {k: _design(front, k) for k in front.worth_keeping()}
     names = {k: f"front-{k:03d}.json" for k in designs}
     for old in folder.glob("front-*.json"):
@@ -66,6 +76,7 @@ def _design(front: Front, k: int) -> Design:
     losses = one.score.verdict
     values = dict(zip(front.objectives, one.score.values(front.objectives), strict=True))
     notes = {"scene": scene.name, "seed": scene.search.seed, **values, "L": losses.L, "K": losses.K}
+    notes |= {"R": losses.R} if scene.making.rules_set else {}
     return scene.design_of(one.points, notes)
 
 
@@ -92,6 +103,7 @@ def _summary(front: Front) -> dict[str, object]:
         "evaluations": front.evaluations,
         "front": len(front.designs),
         "knee": front.knee if front.designs else None,
+        "bound": bound_summary(front.bound, front.lowest_loss),
         "rejected": rejected,
     }
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.bound.certificate import Certificate
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
 from beamopt.pareto.search import Candidate, FrontRecord, front_values
@@ -30,6 +32,7 @@ class Front:
     seen : (n, objectives) values of all that were judged.
     rejected : how many could not be judged or may not be made, by reason.
     seconds : time that the search took.
+    bound : how low L can be, whatever the section, or why that is not known.
     """
 
     status: StopReason
@@ -40,6 +43,7 @@ class Front:
     seen: FloatArray
     rejected: Mapping[Status, int]
     seconds: float
+    bound: Certificate
 
     @property
     def designs(self) -> tuple[Candidate, ...]:
@@ -50,6 +54,11 @@ class Front:
     def values(self) -> FloatArray:
         """(n, objectives) what the front's designs reach."""
         return front_values(self.designs, self.objectives)
+
+    @property
+    def lowest_loss(self) -> float:
+        """L of the design with the lowest [mm²]; infinite without any."""
+        return min((one.score.verdict.L for one in self.designs), default=math.inf)
 
     @property
     def evaluations(self) -> int:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
+from beamopt.bound.certificate import quick_certificate
 from beamopt.evolve.stopping import StopReason
+from beamopt.file_lock import locked
 from beamopt.folder import claim_folder
-from beamopt.judge import Judge
-from beamopt.pareto.folder import JOURNAL, write_front
+from beamopt.judge import in_parts
+from beamopt.pareto.folder import JOURNAL, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.scores import Score, scored
@@ -55,33 +57,40 @@ def find_front(
 
     Raises
     ------
-    InputError : the target, or the folder or journal to go on with, can not be used.
+    InputError : the target, or the folder or journal to go on with, can not be used; or another
+        process is writing to it.
     ImportError : pymoo is not installed.
     """
     search = FrontSearch(scene, objectives, population)
-    judge = scene.judge(scene.load_target())
+    target = scene.load_target()
+    judge = scene.judge(target)
     judge = replace(judge, making=judge.making.counting())
     folder = None if out is None else Path(out)
-    journal = None
-    if folder is not None:
-        claim_folder(folder, JOURNAL, resume=resume)
-        journal = FrontJournal(folder / JOURNAL, scene, objectives, population)
-    started = time.perf_counter()
-    history: list[FrontRecord] = []
-    evaluate = partial(_scored_in_parts, judge, executor=executor, workers=workers)
-    status = _run(search, scene.search.generations, evaluate, journal, history, callback)
-    front = Front(
-        status=status,
-        scene=scene,
-        objectives=tuple(objectives),
-        population=population,
-        history=tuple(history),
-        seen=np.array(search.seen).reshape(-1, len(objectives)),
-        rejected=dict(search.rejected),
-        seconds=time.perf_counter() - started,
-    )
-    if folder is not None:
-        write_front(folder, front, judge, figures=figures)
+    with ExitStack() as held:
+        journal = None
+        if folder is not None:
+            claim_folder(folder, JOURNAL, resume=resume)
+            held.enter_context(locked(folder / JOURNAL))
+            journal = FrontJournal(folder / JOURNAL, scene, objectives, population)
+            begin_folder(folder, scene)
+        started = time.perf_counter()
+        history: list[FrontRecord] = []
+        judged = partial(scored, judge)
+        evaluate = partial(in_parts, judged, executor=executor, workers=workers)
+        status = _run(search, scene.search.generations, evaluate, journal, history, callback)
+        front = Front(
+            status=status,
+            scene=scene,
+            objectives=tuple(objectives),
+            population=population,
+            history=tuple(history),
+            seen=np.array(search.seen).reshape(-1, len(objectives)),
+            rejected=dict(search.rejected),
+            seconds=time.perf_counter() - started,
+            bound=quick_certificate(scene, target),
+        )
+        if folder is not None:
+            write_front(folder, front, judge, figures=figures)
     return front
 
 
@@ -115,13 +124,3 @@ def _run(
             raise
         return StopReason.INTERRUPTED
     return StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
-
-
-def _scored_in_parts(
-    judge: Judge, candidates: Sequence[FeaturePoints], executor: Executor | None, workers: int
-) -> list[Score]:
-    if executor is None or workers <= 1 or len(candidates) < 2 * workers:
-        return scored(judge, candidates)
-    bounds = np.linspace(0, len(candidates), workers + 1).astype(int)
-    parts = [candidates[a:b] for a, b in pairwise(bounds)]
-    return [score for part in executor.map(partial(scored, judge), parts) for score in part]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from beamopt.judge import Judge, Verdict
@@ -16,8 +16,10 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
 from beamopt.streams import Purpose, stream
 
-__all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine"]
+__all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine", "rounds_of"]
 
+ROUNDS, SEALED_ROUNDS = 6, 16
+RATIO_SHARE = 3  # one in so many rounds, once settled, looks for a lower neighbour ratio
 FROM_THE_START = 3  # every so many rounds nothing is kept of the ones before
 
 
@@ -105,15 +107,14 @@ def refine(
     settings = settings or Refining()
     sealed = judge.rules.sealed
     counts = judged_on(judge, View.OUTLINE if sealed else View.RASTER)
-    if symmetry is not None:
-        points = with_cells(points, symmetry)
-    before = counts(points)
+    before = counts(points if symmetry is None else with_cells(points, symmetry))
     if not before.found:
         nothing = (StageRecord(Stage.START, 0, 1, before.verdict),)
-        return _refined(RefineStatus.NOT_JUDGED, before, before, nothing, 0)
+        unjudged = replace(before, points=points)
+        return _refined(RefineStatus.NOT_JUDGED, unjudged, unjudged, nothing, 0)
     work = _Work(judge, settings, seed, symmetry, callback)
     work.evaluations = 1  # that before
-    best = work.rounds(points)
+    best = work.rounds(before.points)
     if sealed and best.found:
         best = work.on_outline(best, counts, before)
     better = best.loss <= before.loss and best.verdict.K <= before.verdict.K
@@ -149,6 +150,11 @@ def improved(
     work = _Work(judge, settings, seed, symmetry, None)
     best = work.rounds(points)
     return (best.points if best.found else points), work.evaluations
+
+
+def rounds_of(settings: Refining, sealed: bool) -> int:
+    """The most rounds: more where a search takes its time too, because its sections are sealed."""
+    return settings.rounds or (SEALED_ROUNDS if sealed else ROUNDS)
 
 
 def _is_better(one: Judged, settled: bool, other: Judged, other_settled: bool) -> bool:
@@ -188,8 +194,9 @@ class _Work:
         if not start.found:  # what its twins or the points on a mirror line were is missed
             return start
         enough = settings.ratio_enough * start.verdict.K
-        best, is_settled, here = start, False, start
-        for number in range(1, settings.rounds + 1):
+        best, is_settled, settled_in, here = start, False, 0, start
+        rounds = rounds_of(settings, judge.rules.sealed)
+        for number in range(1, rounds + 1):
             rng = stream(self.seed, Purpose.REFINEMENT, number)
             orbits = orbits_of(len(here.points), self.symmetry)
             annealed, judged = anneal(judge, truth, here, orbits, schedule, rng)
@@ -201,7 +208,9 @@ class _Work:
             self._told(Stage.DESCENT, number, moved, judged)
             if moved.verdict.K <= start.verdict.K and _is_better(moved, settled, best, is_settled):
                 best, is_settled = moved, settled
-            if is_settled and enough >= best.verdict.K:
+            settled_in = settled_in or (number if is_settled else 0)
+            low = enough >= best.verdict.K
+            if is_settled and (low or number >= settled_in + rounds // RATIO_SHARE):
                 break
             here = start if number % FROM_THE_START == 0 else best
         return best

@@ -98,7 +98,7 @@ def test_a_front_folder_holds_what_a_person_keeps(tmp_path: Path) -> None:
     designs = {name for name in names if re.fullmatch(r"front-\d{3}\.json", name)}
     assert names - designs == {
         "journal.jsonl", "scene.toml", "front.csv", "history.csv", "summary.json", "pareto.svg",
-        "pareto.png", "provenance.json", "timing.csv",
+        "pareto.png", "provenance.json", "timing.csv", "target-source.json",
     }  # fmt: skip
     header, *rows = (tmp_path / "front" / "front.csv").read_text().splitlines()
     assert header == "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"

