@@ -76,7 +76,7 @@ def _parts(result: Optimisation) -> Iterator[Measured]:
 
     def modes() -> None:
         for one in values:
-            judge.rod.tips(one, judge.pressures, parents_on_grid(), all_or_none=True)
+            judge.rod.tips(one, judge.aim.pressures, parents_on_grid(), all_or_none=True)
 
     actions: dict[str, Callable[[], object]] = {
         "all": partial(judge, batch),
