@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 
@@ -30,16 +31,13 @@ class View(Enum):
 class Judged:
     """A section that was judged.
 
-    section : what the rod knows of it. aim : what its tips should be, points of paths as rows at
-    the pressures that were found best. answers : its tips, and where they point. ratio : its
-    neighbour ratio.
+    section : what the rod knows of it. judge : what judged it. ratio : its neighbour ratio.
     """
 
     points: FeaturePoints
     verdict: Verdict
     section: SectionValues
-    aim: Aim
-    answers: Answers
+    judge: Judge
     ratio: float
 
     @property
@@ -51,6 +49,18 @@ class Judged:
     def loss(self) -> float:
         """L and the weighted rules [mm²]; infinite where it could not be judged."""
         return self.verdict.ruled_loss
+
+    @cached_property
+    def aim(self) -> Aim:
+        """What its tips should be, points of paths as rows at the pressures found best."""
+        return self.judge.settled(self.section) if self.found else self.judge.aim
+
+    @cached_property
+    def answers(self) -> Answers:
+        """Its tips, and where they point, at the rows of `aim`; none where it was not judged."""
+        if not self.found:
+            return Answers(np.zeros((0, 3)))
+        return answers_to(self.judge, self.aim, self.section)
 
 
 Truth = Callable[[FeaturePoints], Judged]
@@ -82,12 +92,9 @@ def _judged(judge: Judge, points: FeaturePoints, measured: Phenotypes) -> Judged
     verdict = judge.verdicts(measured, [len(points)])[0]
     ratio = float(measured.neighbour_ratio[0])
     if verdict.status is not Status.JUDGED:
-        nothing = Answers(np.zeros((0, 3)))
         unknown = SectionValues(Moments(np.zeros((4, 6))))
-        return Judged(points, verdict, unknown, judge.aim, nothing, ratio)
-    section = judge.values(measured, 0)
-    aim = judge.settled(section)
-    return Judged(points, verdict, section, aim, answers_to(judge, aim, section), ratio)
+        return Judged(points, verdict, unknown, judge, ratio)
+    return Judged(points, verdict, judge.values(measured, 0), judge, ratio)
 
 
 def answers_to(judge: Judge, aim: Aim, section: SectionValues) -> Answers:

@@ -18,6 +18,8 @@ from beamopt.study.table import Outcome, RefinedOutcome, row, targets_of, title
 
 __all__ = ["write_refined"]
 
+NOTHING = 1e-9  # mm²; less than this is rounding
+
 
 def write_refined(folder: Path, outcomes: Sequence[Outcome], plan: Plan, *, figures: bool) -> None:
     """Write tables, the best refined design of each target, and the figure.
@@ -116,7 +118,7 @@ def _markdown(outcomes: Sequence[Outcome], bounds: dict[str, Certificate], plan:
     ]
     for target, bound in bounds.items():
         low = _lowest(bound)
-        said = "none" if low is None else f"{low:.6g}"
+        said = "none" if low is None else f"{low:.6g}" if low > NOTHING else "0"
         mine = [one for one in outcomes if one.run.target == target and one.refined is not None]
         for combination in (*COMBINATIONS, "all"):
             some = [one for one in mine if combination in (one.run.combination, "all")]
