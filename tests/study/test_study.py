@@ -285,7 +285,7 @@ def test_the_best_refined_design_of_a_target_has_its_loss(refined) -> None:
 
 
 def test_targets_of_a_study_are_bundled_scenes() -> None:
-    with pytest.raises(InputError, match="--target: .mine.: one of"):
+    with pytest.raises(InputError, match=r"--target: .mine.: one of"):
         Plan(targets=("mine",))
     with pytest.raises(InputError, match="once each"):
         Plan(targets=("random-section", "random-section"))
