@@ -25,7 +25,7 @@ COMPARE = (
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
     "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,iterations"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,iterations,status"
 )
 
 
@@ -92,7 +92,7 @@ def _table_csv(compared: Comparison) -> str:
     rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
     return csv_text(
         TABLE,
-        [(*map(plain, at), *cells(row), status.value, spent) for at, row, status, spent in rows],
+        [(*map(plain, at), *cells(row), spent, status.value) for at, row, status, spent in rows],
     )
 
 
@@ -124,8 +124,12 @@ def verdict(checked: Checked) -> str:
     worst, median = (f"{100 * value:.3g} %" for value in (compared.worst, compared.median))
     if not compared.moves:
         return "nothing to compare: no tip moves at any pressure"
-    said = f"worst {worst}, median {median} of displacement (asked {agree})"
-    return f"agrees: {said}" if checked.holds else f"differs: {said}"
+    known = not math.isnan(compared.left)
+    left = f"; mesh and penalty leave up to {100 * compared.left:.3g} %" if known else ""
+    said = f"worst {worst}, median {median} of displacement (asked {agree}{left})"
+    why = "what they leave could turn it over" if known else "it stands on one mesh"
+    sure = "" if checked.certain else f"; uncertain, as {why}"
+    return f"{'agrees' if checked.holds else 'differs'}: {said}{sure}"
 
 
 def _loaded(compared: Comparison) -> int:
@@ -142,6 +146,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "kind": "implementation",
             "law": options.law,
             "holds": checked.holds,
+            "certain": checked.certain,
             "text": verdict(checked),
             "agree": options.agree,
         },
@@ -193,6 +198,7 @@ def _differences(compared: Comparison) -> dict[str, Any]:
         "worst_discretisation_mm": most(compared.discretisation),
         "worst_assumptions_mm": most(compared.assumptions),
         "worst_penalty_mm": most(compared.penalty_error),
+        "worst_left_of_displacement": _number(compared.left),
     }
 
 

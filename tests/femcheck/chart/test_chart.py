@@ -384,6 +384,19 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
 
 
 @pytest.mark.usefixtures("undrawn")
+def test_no_model_is_left_out_for_its_time_unless_that_is_asked_for(tmp_path: Path) -> None:
+    """However long models take, as on a machine that is busy, the chart has all of them."""
+    slow = made(seconds=lambda model: 1e7 * model.layers**3)
+    chart = charted(question_of(NEO), tmp_path / "slow", slow, families=["wedge18"])
+    quick = made()
+    same = charted(question_of(NEO), tmp_path / "quick", quick, families=["wedge18"])
+    assert slow.asked == quick.asked
+    np.testing.assert_array_equal(
+        [row.error for row in chart.rows], [row.error for row in same.rows]
+    )
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_a_correction_is_asked_though_the_finest_is_too_dear(tmp_path: Path) -> None:
     """Stiffer penalties at four layers take what four layers take."""
     solids = made(seconds=lambda model: 10.0 * model.layers)
