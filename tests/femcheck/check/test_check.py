@@ -211,6 +211,9 @@ def test_the_picture(done: Done) -> None:
     left, right = (image[:, :900], colours[:, :900]), (image[:, 900:], colours[:, 900:])
     assert (left[1] > 0.2).mean() > 0.001  # walls by supply
     assert (right[0][..., :3].min(axis=2) < 0.9).mean() > 0.01  # a body and its title
+    # the whole of a slender body is in view: nothing between it and the lines of text
+    for rows in (slice(30, 45), slice(955, 970)):
+        assert (right[0][rows, :, :3] > 0.98).all()
 
 
 def test_a_picture_that_fails_is_only_a_log(
