@@ -128,8 +128,8 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "mesh gone": (removed("deformed/20-0-0.vtu"), r"20-0-0\.vtu: is missing"),
     "tags gone": (removed("mesh.vtu"), r"mesh\.vtu: is missing"),
     "no displacement": (
-        replaced("deformed/20-0-0.vtu", 'Name="displacement"', 'Name="displaced"'),
-        r"20-0-0\.vtu: displacement: must be given",
+        replaced("deformed/20-0-0.vtu", 'Name="displacement_mm"', 'Name="displacement"'),
+        r"20-0-0\.vtu: displacement_mm: must be given",
     ),
     "no tags": (replaced("mesh.vtu", 'Name="tag"', 'Name="gat"'), r"mesh\.vtu: tag: must be given"),
 }
