@@ -60,7 +60,7 @@ def test_any_text_is_read_as_it_was_written(described: str, notes: dict[str, str
     pieces = [{"share": 0.5}, {"share": 0.5, "section": {"notes": notes}}]
     data = {"description": described, "rod": {"segments": pieces}}
     whole = all(
-        "\ud800" > one or one > "\udfff" for one in "".join([described, *notes, *notes.values()])
+        one < "\ud800" or one > "\udfff" for one in "".join([described, *notes, *notes.values()])
     )
     if not whole:
         with pytest.raises(InputError) as caught:
