@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from functools import partial
@@ -61,6 +62,10 @@ class SegmentChoice(Model):
     def _has_one_section(self) -> SegmentChoice:
         if self.file is not None and self.section is not None:
             raise ValueError("either file or section")
+        try:
+            json.dumps(self.section, ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise ValueError("section: text with half a surrogate pair") from None
         return self
 
 

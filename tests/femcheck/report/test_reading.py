@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
+from beamopt.files import csv_text
+from femcheck.report.content import read_table
 from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
@@ -39,6 +41,12 @@ def test_a_prediction_is_read(predicted: Path) -> None:
     assert all(np.isfinite(found.ends_at[missing]))
     row = int(np.flatnonzero(missing)[0])
     assert found.ending(row) == f"{found.statuses[row]} at P = {found.ends_at[row]:.4g} kPa"
+
+
+def test_text_that_was_defused_is_shown_as_it_was(tmp_path: Path) -> None:
+    texts = ("=1+1", "'-x", "-1.5", "@a")
+    (tmp_path / "a.csv").write_text(csv_text("a,b,c,d", [texts]), encoding="utf-8")
+    assert read_table(tmp_path / "a.csv").rows == (texts,)
 
 
 def test_folders_are_found(checked: Path, predicted: Path, tmp_path: Path) -> None:
