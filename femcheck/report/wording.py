@@ -30,7 +30,9 @@ MEANINGS: Mapping[str, str] = {
     Status.INVERTED.value: "the mesh gave way, not the actuator: the computation ends here",
     Status.STEP_TOO_SMALL.value: "the computation could not follow its path any further",
     Status.LINEAR_SOLVER.value: "the tangent was singular, or too badly conditioned to solve",
-    Status.TIME_OUT.value: "more time (--seconds) may bring an answer",
+    Status.WORK_LIMIT.value: "more work (--iterations) may bring an answer",
+    Status.TIME_OUT.value: "the clock set by --seconds ran out, which depends on the machine; "
+    "--resume tries it again",
     Status.STOPPED.value: "it was killed or never begun; --resume goes on with it",
 }
 

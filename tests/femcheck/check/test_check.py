@@ -98,7 +98,7 @@ def test_difference_falls_as_the_penalty_rises(done: Done) -> None:
     limit, off = compared.final.tips[row], {}
     for c in (100.0, 400.0, 1600.0):
         soft = replace(solid, law=RigidSection(300.0, c))
-        state = solve_case(Case(soft, pressures, None, None, 60.0)).outcome.state
+        state = solve_case(Case(soft, pressures, None, None)).outcome.state
         assert state is not None
         off[c] = np.linalg.norm(state.tip - centroid - limit)
     for c in (2500.0, 10000.0):
