@@ -31,7 +31,7 @@ GRAMS_PER_KG = 1e3
 class Actuator(Model):
     """The extruded body and its material."""
 
-    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
+    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=0.1, high=1e5)
     youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
     shear_modulus: Number = quantity(100.0, "shear modulus G", unit="kPa", low=1, high=50_000)
 
