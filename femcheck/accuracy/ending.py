@@ -8,12 +8,10 @@ from enum import Enum
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.status import RodStatus
-from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
-__all__ = ["Ending", "Tried", "Within", "is_physical"]
+__all__ = ["Ending", "Tried", "Within"]
 
 
 class Ending(Enum):
@@ -72,14 +70,3 @@ class Within:
             return "none"
         model = next(one.model for one in self.tried if one.reply is self.reply)
         return f"{model.family} {model.resolution}".strip()
-
-
-def is_physical(reason: str) -> bool:
-    """Whether a tip is missing because the actuator has none, not because it was not computed."""
-    return any(reason.startswith(one.value) for one in NO_EQUILIBRIUM)
-
-
-NO_EQUILIBRIUM = (
-    *(Status.LIMIT_POINT, Status.BUCKLED),
-    *(RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED),
-)

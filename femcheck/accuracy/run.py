@@ -27,7 +27,7 @@ __all__ = ["beam_difference", "run_accuracy"]
 
 JOURNAL = "journal.jsonl"
 NAMES = (JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json")
-TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status"
+TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
 TRIED = "model,unknowns,size,found,of"
 DIGITS = 6  # of a millimetre
 
@@ -100,7 +100,7 @@ def _write(found: Within, out: Path) -> None:
     write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
     tried = [
         (f"{one.model.family} {one.model.resolution}".strip(), one.reply.unknowns, one.reply.size,
-         int(one.reply.found.sum()), len(one.reply.reasons))
+         int(one.reply.found.sum()), len(one.reply.endings))
         for one in found.tried
     ]  # fmt: skip
     write_atomic(out / "tried.csv", csv_text(TRIED, tried))
@@ -120,13 +120,13 @@ def _tips(found: Within) -> Iterator[tuple[object, ...]]:
         found.estimate,
         beam,
         difference,
-        found.reply.reasons,
+        found.reply.endings,
         strict=True,
     )
-    for pressures, tip, estimate, own, away, reason in rows:
+    for pressures, tip, estimate, own, away, ended in rows:
         numbers = [*tip, estimate, *own, away]
         rounded = [None if np.isnan(x) else round(float(x), DIGITS) + 0.0 for x in numbers]
-        yield (*pressures, *rounded, reason)
+        yield (*pressures, *rounded, str(ended), ended.key)
 
 
 def _summary(found: Within) -> dict[str, Any]:
@@ -136,6 +136,7 @@ def _summary(found: Within) -> dict[str, Any]:
         "law": found.question.law_text,
         "accuracy_mm": found.accuracy,
         "ending": found.ending.value,
+        "ended": found.ending.name,
         "reached": found.ending is Ending.REACHED,
         "chosen": found.chosen,
         "reason": found.reason,

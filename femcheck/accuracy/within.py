@@ -11,7 +11,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from femcheck.accuracy.ending import Ending, Tried, Within, is_physical
+from femcheck.accuracy.ending import Ending, Tried, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.chart.lineup import STIFFER
 from femcheck.chart.measure import Measured
@@ -229,11 +229,10 @@ class _Asking:
     def _ended(self, reply: Reply, estimate: FloatArray, reason: str) -> Within:
         """Reached where every tip that any model has is there, and near enough."""
         some = np.any([one.reply.found for one in self.tried], axis=0)
-        lost = [not found and not is_physical(reason) for found, reason in
-                zip(reply.found, reply.reasons, strict=True)]  # fmt: skip
+        lost = [not one.is_found and not one.status.is_physical for one in reply.endings]
         unsure = (some & ~(estimate <= self.accuracy)) | np.array(lost)
         if not some.any() and not any(lost):
-            return self._nothing(Ending.NO_TIP, f"{reason}; {reply.reason}")
+            return self._nothing(Ending.NO_TIP, f"{reason}; {reply.ended}")
         ending = Ending.NOT_REACHED if unsure.any() else Ending.REACHED
         return Within(
             self.question, self.accuracy, ending, reply, estimate, tuple(self.tried), reason

@@ -23,7 +23,6 @@ from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject, geometry_steps
 from femcheck.check.tables import tables_of
 from femcheck.check.work import solve_all
-from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -31,8 +30,6 @@ from femcheck.mesh.quality import quality_of
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["check_design"]
-
-AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a check that goes on tries these once more
 
 Progress = Callable[[int, int, str], None]
 Pool = Callable[[int], AbstractContextManager[Executor]]
@@ -123,7 +120,7 @@ def _take_kept(folder: Path, schedule: Schedule) -> None:
         shapes = Shapes(stage.solid.body())
         for key in (key for key in schedule.keys if key[0] == stage.name):
             known = read_case(folder, key, shapes, stage.solid.digest)
-            if known is not None and known.status not in AGAIN:
+            if known is not None and not known.status.is_interrupted:
                 schedule.results[key] = known
 
 

@@ -172,6 +172,6 @@ def _table(found: Within) -> Table:
             *("–" if np.isnan(x) else f"{x:.3f}" for x in tip),
             "–" if np.isnan(estimate) else f"{estimate:.2g}",
             "–" if np.isnan(away) else f"{away:.3f}",
-            found.reply.reasons[row],
+            str(found.reply.endings[row]),
         )
     return table

@@ -33,7 +33,6 @@ from femcheck.prediction.work import RayKey, RayWork
 
 __all__ = ["predict_design"]
 
-AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a prediction that goes on tries these once more
 FIGURES = ("paths", "axis")
 
 Progress = Callable[[int, int, str], None]
@@ -82,7 +81,7 @@ def predict_design(
     digests = {key: _digest(solids[key[0]], work, key) for key in work.keys}
     for key in work.keys:
         kept = read_ray(_file(folder, work, key), digests[key])
-        if kept is not None and kept.status not in AGAIN:
+        if kept is not None and not kept.status.is_interrupted:
             work.results[key] = kept
 
     def keep(key: RayKey, result: RayResult) -> None:

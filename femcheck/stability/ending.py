@@ -31,6 +31,11 @@ class Ending(Enum):
         return self in (Ending.STABLE, Ending.UNCHECKED)
 
     @property
+    def is_interrupted(self) -> bool:
+        """Whether a clock or the death of its process ended it: a map that goes on tries again."""
+        return self in (Ending.TIME_OUT, Ending.STOPPED)
+
+    @property
     def says_none(self) -> bool:
         """Whether the solver found out that the stable path ends below this pressure."""
         return self in (Ending.LIMIT_POINT, Ending.BUCKLED)

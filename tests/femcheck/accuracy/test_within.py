@@ -16,10 +16,12 @@ from femcheck.accuracy.ending import Ending, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.accuracy.within import SAFETY, answer_within
 from femcheck.chart.lineup import STIFFER
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.outcome import Status
+from femcheck.mesh.gmsh_section import MeshProblem
 from femcheck.models.beam import RodOnOutline
 from femcheck.models.named import named_design
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck import made_up
@@ -249,8 +251,8 @@ def test_a_tip_that_one_model_lacks_is_not_sure(layers: int) -> None:
 @pytest.mark.parametrize("rows", [range(3), [1]], ids=["all", "one"])
 def test_what_could_not_be_computed_is_not_reached(rows: list[int]) -> None:
     """No mesh and no time say nothing of the actuator, other than a limit point."""
-    for reason in ("gmsh crashed", "time limit reached at P = 3 kPa"):
-        made = MadeUp(powers(1.0, 2), missing=lambda model: rows, reason=reason)
+    for ended in (Ended(MeshProblem.CRASHED), Ended(Status.TIME_OUT, 3.0)):
+        made = MadeUp(powers(1.0, 2), missing=lambda model: rows, ended=ended)
         found, _ = answered(made.off, 0.05, made=made)
         assert found.ending is Ending.NOT_REACHED
         assert np.isnan(found.estimate[1])
@@ -395,7 +397,7 @@ def test_one_combination_without_pressure() -> None:
     assert found.ending is Ending.REACHED
     assert found.worst == 0.0
     assert found.reply is not None
-    assert found.reply.reasons == (FOUND,)
+    assert all(one.is_found for one in found.reply.endings)
 
 
 def test_scales_are_of_the_beam() -> None:
