@@ -11,7 +11,7 @@ from beamopt.arrays import FloatArray
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
-__all__ = ["Ending", "Tried", "Within"]
+__all__ = ["Ending", "Source", "Tried", "Within"]
 
 
 class Ending(Enum):
@@ -24,6 +24,17 @@ class Ending(Enum):
     NO_MODEL = "no model of this law can be made of the design"
 
 
+class Source(Enum):
+    """Where an estimate of the error is from; the value is the text shown to people."""
+
+    CLOSED_FORM = (
+        "exact up to rounding: the beam is the law's own closed form; nothing was compared"
+    )
+    TIGHTER = "the change from rods solved less tightly, and the last tolerance"
+    COARSER = "the changes from solids with fewer layers, other triangles and penalties"
+    NOTHING = "no estimate: nothing was compared"
+
+
 @dataclass(frozen=True, eq=False)
 class Tried:
     """A model that was asked, and what it took of the processor [s]."""
@@ -32,6 +43,11 @@ class Tried:
     reply: Reply
     seconds: float
 
+    @property
+    def name(self) -> str:
+        """Of the model."""
+        return f"{self.model.family} {self.model.resolution}".strip()
+
 
 @dataclass(frozen=True, eq=False)
 class Within:
@@ -39,9 +55,10 @@ class Within:
 
     accuracy : asked for [mm]. ending : whether it was reached.
     reply : of the finest model; empty of tips without one.
-    estimate : (n,) error of each tip [mm]; NaN where that is not known, or there is no tip.
+    estimate : (n,) error of each tip [mm]; NaN where nothing was compared, or there is no tip.
     tried : all models that were asked, the last one's reply is the answer.
     reason : why this rung, in a sentence.
+    source : where the estimate is from.
     """
 
     question: Question
@@ -51,6 +68,7 @@ class Within:
     estimate: FloatArray
     tried: tuple[Tried, ...]
     reason: str
+    source: Source = Source.NOTHING
 
     @property
     def seconds(self) -> float:
@@ -68,5 +86,16 @@ class Within:
         """The model whose tips these are."""
         if self.reply is None:
             return "none"
-        model = next(one.model for one in self.tried if one.reply is self.reply)
-        return f"{model.family} {model.resolution}".strip()
+        return next(one.name for one in self.tried if one.reply is self.reply)
+
+    @property
+    def compared_with(self) -> tuple[str, ...]:
+        """Models that the estimate compares the chosen one with; none without an estimate."""
+        if self.source in (Source.CLOSED_FORM, Source.NOTHING):
+            return ()
+        return tuple(one.name for one in self.tried if one.reply is not self.reply)
+
+    @property
+    def is_beam(self) -> bool:
+        """Whether these are the tips of a beam: a difference to the beam says nothing then."""
+        return self.source in (Source.CLOSED_FORM, Source.TIGHTER)

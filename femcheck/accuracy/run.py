@@ -84,13 +84,16 @@ def run_accuracy(
 
 
 def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
-    """The design's own tips (n, 3) and their distances (n,) from what was found [mm]."""
+    """The design's own tips (n, 3) and their distances (n,) from what was found [mm].
+
+    Distances are NaN where what was found is the beam itself.
+    """
     question = found.question
     try:
         beam = question.design.tips(question.pressures)
     except NoEquilibriumError:
         beam = np.full((len(question.pressures), 3), np.nan)
-    if found.reply is None:
+    if found.reply is None or found.is_beam:
         return beam, np.full(len(beam), np.nan)
     return beam, found.reply.away(beam)
 
@@ -99,7 +102,7 @@ def _write(found: Within, out: Path) -> None:
     found.question.design.save(out / "design.json")
     write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
     tried = [
-        (f"{one.model.family} {one.model.resolution}".strip(), one.reply.unknowns, one.reply.size,
+        (one.name, one.reply.unknowns, one.reply.size,
          int(one.reply.found.sum()), len(one.reply.endings))
         for one in found.tried
     ]  # fmt: skip
@@ -140,5 +143,8 @@ def _summary(found: Within) -> dict[str, Any]:
         "reached": found.ending is Ending.REACHED,
         "chosen": found.chosen,
         "reason": found.reason,
+        "compared_with": list(found.compared_with),
+        "estimate_is": found.source.value,
+        "estimate_source": found.source.name,
         "worst_estimate_mm": None if np.isnan(worst) else float(f"{worst:.4g}"),
     }

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from beamopt.errors import InputError
 from femcheck.accuracy import within
-from femcheck.accuracy.ending import Ending, Within
+from femcheck.accuracy.ending import Ending, Source, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.accuracy.within import SAFETY, answer_within
 from femcheck.chart.lineup import STIFFER
@@ -314,8 +314,25 @@ def test_the_beams_own_law_is_a_closed_form() -> None:
     found = answer_within(question_of(made_up.RIGID), 1e-9)
     assert found.ending is Ending.REACHED
     assert found.chosen == "beam"
-    assert found.worst == 0.0
+    assert (found.source, found.compared_with) == (Source.CLOSED_FORM, ())
+    assert np.isnan(found.estimate).all()
     assert len(found.tried) == 1
+
+
+def test_what_was_compared_with_what() -> None:
+    """A rod under loads with itself less tight, a solid with other solids; without two, nothing."""
+    name, design = named_design("gravity")
+    rod = answer_within(Question.of(name, design, made_up.RIGID, AT), 0.1)
+    assert (rod.source, rod.is_beam) == (Source.TIGHTER, True)
+    assert (rod.chosen, rod.compared_with) == ("beam 0.001 mm", ("beam 0.1 mm",))
+    solid, made = answered(powers(1.0, 2), 0.05)
+    assert (solid.source, solid.is_beam) == (Source.COARSER, False)
+    others = {f"wedge18 {model.resolution}" for model in made.asked} - {solid.chosen}
+    assert set(solid.compared_with) == others
+    assert len(others) >= 3
+    dear = MadeUp(powers(10.0, 2), seconds=lambda model: 1000.0)
+    found, _ = answered(dear.off, 0.05, made=dear, most_seconds=70.0)
+    assert (found.source, found.compared_with) == (Source.NOTHING, ())
 
 
 @pytest.mark.parametrize("scene", ["gravity", "tool-at-the-tip", "upright-column"])
