@@ -11,21 +11,22 @@ import numpy as np
 from beamopt.files import csv_text, json_text
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
+from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 
-__all__ = ["COMPARE", "cells", "plain", "summary", "tables_of", "verdict"]
+__all__ = ["COMPARE", "both", "cells", "plain", "summary", "tables_of", "verdict"]
 
 DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
 
 COMPARE = (
     "law,c,nu,mesh,p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,"
     "difference_of_length,difference_of_displacement,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended"
 )
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
     "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,iterations,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
 )
 
 
@@ -66,7 +67,7 @@ def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(solid.volume_ratios[row]),
-                solid.statuses[row].value,
+                *both(solid.statuses[row]),
             )
 
 
@@ -92,8 +93,13 @@ def _table_csv(compared: Comparison) -> str:
     rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
     return csv_text(
         TABLE,
-        [(*map(plain, at), *cells(row), spent, status.value) for at, row, status, spent in rows],
+        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
     )
+
+
+def both(status: Status) -> tuple[str, str]:
+    """Cells of the columns "status" and "ended": the text for people, the key for programs."""
+    return status.value, Ended(status).key
 
 
 def plain(value: float) -> object:

@@ -41,12 +41,6 @@ class Status(Enum):
         """Whether a limit on work or on time ended it, and nothing that it computed."""
         return self in (Status.WORK_LIMIT, Status.TIME_OUT)
 
-    def ending(self, pressure: float) -> str:
-        """How a case ended, and at which pressure [kPa] unless it has an answer."""
-        if self is Status.CONVERGED:
-            return str(self.value)
-        return f"{self.value} at P = {pressure:.4g} kPa"
-
 
 @dataclass
 class Statistics:

@@ -35,6 +35,16 @@ class MeshProblem(Enum):
     FATAL = "no solid can be made of the outline"
     INVERTED = "a mesh element is inside out or flat"
 
+    @property
+    def is_interrupted(self) -> bool:
+        """False: gmsh hangs on an outline, and does so again."""
+        return False
+
+    @property
+    def is_physical(self) -> bool:
+        """False: no mesh says nothing of the actuator."""
+        return False
+
 
 @dataclass(frozen=True, slots=True)
 class MeshFailure:

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
-from femcheck.check.tables import COMPARE, DIGITS, cells, plain
+from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
 from femcheck.material.catalogue import constants_of
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.prediction import Prediction
@@ -22,7 +22,7 @@ __all__ = ["tables_of"]
 
 MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z"
 LIMITS = (
-    "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
+    "mesh,d1,d2,d3,status,ended,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
     "mode_at_z,mode_share,points,steps,iterations,"
     "on_the_other_mesh_kpa,ratio,meshes"
@@ -71,7 +71,7 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(_ratios(found, mesh, answer)),
-                found.status(row, mesh).value,
+                *both(found.status(row, mesh)),
                 *cells([found.ended_at(row, mesh), found.snap(row, mesh)]),
                 *_stretched(answer),
             )
@@ -97,7 +97,7 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
         yield (
             mesh,
             *map(plain, found.rays[number].direction),
-            result.status.value,
+            *both(result.status),
             *cells([result.critical, math.nan if last is None else last.load]),
             *cells(_ratios(found, mesh, last)),
             *_stretched(last),
@@ -114,7 +114,7 @@ def _other_mesh(found: Prediction, mesh: str, number: int) -> list[object]:
     ends = found.ends(number)
     standard, coarse = ends.loads
     other = coarse if mesh == "standard" else standard
-    return [*_finite([other, ends.ratio]), ends.agreement.value]
+    return [*_finite([other, ends.ratio]), ends.agreement.name]
 
 
 def _finite(values: Sequence[float]) -> list[object]:
@@ -222,7 +222,7 @@ def _safe_box(found: Prediction) -> dict[str, Any]:
         "kpa": _number(box.pressure),
         "margin": MARGIN,
         "largest_growth": GROWTH,
-        "limited_by": box.why.value,
+        "limited_by": box.why.name,
         "of": None if number is None else found.rays[number].text,
         "mesh": mesh,
         "there_kpa": _number(box.at),
@@ -237,6 +237,7 @@ def _limit(found: Prediction, ends: RayEnds) -> dict[str, Any]:
     return {
         "of": ray.text,
         "status": result.status.value,
+        "ended": result.status.name,
         "ends_at_kpa": _number(result.critical),
         "status_on_the_coarse_mesh": None if coarse is None else coarse.status.value,
         "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),

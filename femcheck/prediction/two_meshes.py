@@ -95,7 +95,7 @@ def _stable_up_to(ray: Ray, result: RayResult) -> float:
 
 
 class Why(Enum):
-    """What keeps a safe box from being larger; the value is its name in files."""
+    """What keeps a safe box from being larger."""
 
     END = "end of a ray"
     GROWTH = "growth of a chamber"
