@@ -18,6 +18,7 @@ from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import phenotypes
+from tests.journals import rewritten
 from tests.validation.resume import content
 
 SHORT = ("search.generations=3", "search.population=10")
@@ -199,7 +200,7 @@ def test_an_entry_without_its_rules_is_refused(value: str, tmp_path: Path) -> No
     path = tmp_path / "run" / "journal.jsonl"
     lines = path.read_text().splitlines(keepends=True)
     first = lines[1].partition('"judged":[["')[2].partition("]")[0]
-    lines[1] = lines[1].replace(first, first.rpartition(",")[0] + value, 1)
+    lines[1] = rewritten(lines[1], first, first.rpartition(",")[0] + value)
     path.write_text("".join(lines))
     with pytest.raises(InputError, match="line 2"):
         optimize(scene, tmp_path / "run", resume=True, figures=False)
