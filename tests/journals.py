@@ -2,7 +2,14 @@
 
 from beamopt.line_journal import with_digest, without_digest
 
-__all__ = ["rewritten"]
+__all__ = ["rewritten", "without_digests"]
+
+
+def without_digests(journal: bytes) -> bytes:
+    """A search's journal as its first version was written."""
+    _, *lines = journal.decode().splitlines()
+    texts = ['{"schema":"beamopt-journal/1"}', *(str(without_digest(line)) for line in lines)]
+    return "".join(text + "\n" for text in texts).encode()
 
 
 def rewritten(line: str, old: str, new: str) -> str:

@@ -12,10 +12,9 @@ from beamopt.errors import InputError
 from beamopt.evolve import journal as journal_module
 from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.evolve.journal import Journal
-from beamopt.line_journal import without_digest
 from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
-from tests.journals import rewritten
+from tests.journals import rewritten, without_digests
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=4"])
 
@@ -111,13 +110,6 @@ def test_every_changed_digit_is_noticed(whole: bytes, tmp_path: Path) -> None:
     path.write_bytes(header + first)
     with Journal(path) as journal:
         assert len(next(journal.replay(search))) == 20
-
-
-def without_digests(whole: bytes) -> bytes:
-    """As the first version wrote it."""
-    _, *lines = whole.decode().splitlines()
-    texts = ['{"schema":"beamopt-journal/1"}', *(str(without_digest(line)) for line in lines)]
-    return "".join(text + "\n" for text in texts).encode()
 
 
 @pytest.mark.parametrize("cut", [500, -1, -200])

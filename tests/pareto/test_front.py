@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,7 @@ from beamopt.pareto.scores import nondominated, scored
 from beamopt.pareto.search import FrontRecord, FrontSearch, front_values
 from beamopt.scene import Scene, load_scene
 from tests.journals import rewritten
-from tests.validation.resume import content
+from tests.validation.resume import content, everything
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=6"])
 SMALL = 16
@@ -166,6 +167,31 @@ def test_it_can_be_given_more_generations(whole: Path, tmp_path: Path) -> None:
     find_front(short, ("L", "mass"), tmp_path / "front", population=SMALL)
     find_front(SCENE, ("L", "mass"), tmp_path / "front", population=SMALL, resume=True)
     assert content(tmp_path / "front") == content(whole)
+
+
+def test_a_front_never_goes_backwards(whole: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "front"))
+    before = everything(folder)
+    fewer = load_scene("hand-drawn-section", ["search.generations=5"])
+    with pytest.raises(InputError) as caught:
+        find_front(fewer, ("L", "mass"), folder, population=SMALL, resume=True, figures=False)
+    assert (caught.value.key, caught.value.value) == ("search.generations", 5)
+    assert everything(folder) == before
+
+
+def test_resuming_a_finished_front_changes_no_byte(whole: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "front"))
+    before = everything(folder)
+    front = find_front(SCENE, ("L", "mass"), folder, population=SMALL, resume=True)
+    assert front.timing.judged == 0
+    assert everything(folder) == before
+
+    def interrupt(record: FrontRecord) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        find_front(SCENE, ("L", "mass"), folder, population=SMALL, resume=True, callback=interrupt)
+    assert everything(folder) == before
 
 
 def test_only_what_is_cut_off_is_judged_again(whole: Path, tmp_path: Path) -> None:
