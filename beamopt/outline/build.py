@@ -17,6 +17,7 @@ from beamopt.outline.outline import Chamber, Loop, Outline, Piece
 from beamopt.outline.resampling import resample
 from beamopt.outline.ring import fine_sagitta, ring_polygon
 from beamopt.outline.smoothing import Region, loops_of, parts_of, sealed_chambers
+from beamopt.section.cell_owners import points_with_cells
 from beamopt.section.drawing import Shape
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import PolarGrid
@@ -53,12 +54,15 @@ def build_outline(
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis, a sagitta that is not positive.
+    ValueError : a feature point that has a cell is farther than 10⁶ mm from the axis, or the
+        sagitta is not positive.
     """
     if not 0 < sagitta < np.inf:
         raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
     import shapely
 
+    if isinstance(source, FeaturePoints):
+        source = points_with_cells(grid, source)
     ring = ring_polygon(grid)
     smooth = _smooth(grid, source, rules, ring)
     moments = _smooth_moments(grid, smooth)
