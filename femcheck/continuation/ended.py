@@ -26,13 +26,13 @@ class NoReply(Enum):
         return self is NoReply.TOO_DEAR
 
     @property
-    def is_physical(self) -> bool:
+    def is_settled(self) -> bool:
         """False: it says nothing of the actuator."""
         return False
 
 
 ReplyStatus = Status | RodStatus | MeshProblem | NoReply
-"""Each has `is_interrupted` and `is_physical`."""
+"""Each has `is_interrupted` and `is_settled`."""
 
 GROUPS: dict[str, type[ReplyStatus]] = {
     "solid": Status,

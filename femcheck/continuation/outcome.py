@@ -16,6 +16,7 @@ class Status(Enum):
     CONVERGED = "converged"
     LIMIT_POINT = "limit point"
     BUCKLED = "buckled"
+    BEYOND_LAW = "stretched beyond what the law describes"
     INVERTED = "an element turned inside out"
     STEP_TOO_SMALL = "load steps became too small"
     LINEAR_SOLVER = "the linear solver found no solution"
@@ -34,6 +35,11 @@ class Status(Enum):
     def is_physical(self) -> bool:
         """Whether the actuator has no stable equilibrium there; other endings say nothing of it."""
         return self in (Status.LIMIT_POINT, Status.BUCKLED)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
+        return self.is_physical or self is Status.BEYOND_LAW
 
 
 @dataclass
