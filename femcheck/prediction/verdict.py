@@ -39,10 +39,10 @@ def _answered(found: Prediction) -> str:
 
 def _unanswered(found: Prediction) -> str:
     """Some have none: what happens first, and what of the workspace is lost."""
-    loaded, failed = int(found.is_loaded.sum()), found.not_computed
+    loaded, failed, beyond = int(found.is_loaded.sum()), found.not_computed, found.beyond_law
     parts = []
     first = found.first_to_end
-    lost = found.unanswered - failed
+    lost = found.unanswered - failed - beyond
     if first is not None and lost:
         ray, result = found.rays[first], found.result(first)
         parts.append(
@@ -53,6 +53,12 @@ def _unanswered(found: Prediction) -> str:
         parts.append(
             f"{lost} of {loaded} combinations {_have(lost)} no stable answer: "
             f"the beam's workspace at {found.largest:g} kPa {exists}"
+        )
+    left = found.first_to_leave
+    if beyond and left is not None:
+        parts.append(
+            f"{beyond} of {loaded} combinations {_have(beyond)} no answer that is known: "
+            f"{found.law.name} {_range(found)}, which {_passed(found, left)}"
         )
     worst = found.first_to_fail
     if failed and worst is not None:
@@ -69,14 +75,30 @@ def advice(found: Prediction) -> str | None:
     if not found.has_answers or found.unanswered == 0:
         return None
     first = found.first_to_end
-    if first is None or found.unanswered == found.not_computed:
+    if found.unanswered == found.not_computed:
         return "try again with --resume, more --seconds, or another --size or --layers"
     stay = f"stay below {_down(found.stable_box)} kPa in every supply"
+    if first is None:
+        return f"{stay}, or take a law that was fitted to larger stretches"
     if found.options.wound in (Wound.CHAMBERS, Wound.BOTH):
         return f"{stay}, or thicken the walls that give way"
     if found.result(first).status is Status.LIMIT_POINT and found.growth(first) >= BALLOON:
         return f"{stay}, or wind every chamber (--law wound shows what that does)"
     return f"{stay}, or thicken the walls that give way, and wind every chamber"
+
+
+def _range(found: Prediction) -> str:
+    return f"describes stretches up to {found.law.most_stretch:.3g}"
+
+
+def _passed(found: Prediction, number: int) -> str:
+    """Where a ray leaves what the law describes."""
+    result, ray = found.result(number), found.rays[number]
+    said = f"is passed at {result.critical:.3g} kPa ({ray.text}"
+    if result.last is None:
+        return f"{said})"
+    x, y, z = np.round(result.last.stretch_at, 1) + 0.0
+    return f"{said}, near ({x:.1f}, {y:.1f}, {z:.1f}) mm)"
 
 
 def _have(count: int) -> str:
