@@ -178,6 +178,11 @@ class Prediction:
         return self._first({status for status in Status if status.is_physical})
 
     @property
+    def first_to_leave(self) -> int | None:
+        """The ray that leaves what the law describes at the lowest load; None where none does."""
+        return self._first({Status.BEYOND_LAW})
+
+    @property
     def first_to_fail(self) -> int | None:
         """The ray that the computation lost at the lowest load; None where it lost none."""
         return self._first({status for status in Status if _is_lost(status)})
@@ -192,6 +197,11 @@ class Prediction:
         return sum(_is_lost(self.status(row)) for row in range(len(self.places)))
 
     @property
+    def beyond_law(self) -> int:
+        """Combinations without an answer because the law describes no stretch so large."""
+        return sum(self.status(row) is Status.BEYOND_LAW for row in range(len(self.places)))
+
+    @property
     def is_checked(self) -> bool:
         """Whether unstable directions were counted at every equilibrium."""
         return all((result.track[:, -1] >= 0).all() for result in self.results.values())
@@ -201,7 +211,8 @@ class Prediction:
         """P [kPa] so that combinations up to P in every supply have a stable answer on both meshes.
 
         As far as the rays tell: the combinations, scaled down, lie on the same ones. Where the
-        computation lost a ray it is what is known, and may be more.
+        computation lost a ray, or one left what the law describes, it is what is known, and may be
+        more.
         """
         ends = [one.critical for one in self.results.values() if np.isfinite(one.critical)]
         return min(ends, default=self.largest)
@@ -213,11 +224,12 @@ class Prediction:
 
     @property
     def decisive(self) -> list[int]:
-        """Rays that the verdict stands on: the first to end, the first to be lost.
+        """Rays that the verdict stands on: the first to end, to leave the law, to be lost.
 
         Where all have their answers, that of the combination that the beam is farthest off at.
         """
-        found = [n for n in (self.first_to_end, self.first_to_fail) if n is not None]
+        firsts = (self.first_to_end, self.first_to_leave, self.first_to_fail)
+        found = [n for n in firsts if n is not None]
         shares = np.where(self.is_loaded, self.share, np.nan)
         if not found and np.isfinite(shares).any():
             place = self.places[int(np.nanargmax(shares))]
@@ -262,5 +274,5 @@ class Prediction:
 
 
 def _is_lost(status: Status) -> bool:
-    """Whether the computation lost a ray: neither an answer nor an end that the actuator has."""
-    return status is not Status.CONVERGED and not status.is_physical
+    """Whether the computation lost a ray: no answer, and no end that the actuator or law has."""
+    return status is not Status.CONVERGED and not status.is_settled

@@ -12,6 +12,8 @@ from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
 from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
 from femcheck.material.catalogue import constants_of
+from femcheck.material.isotropic import Isotropic
+from femcheck.material.law import Law
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import TRACK
@@ -167,6 +169,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
                 for one in constants_of(found.law)
             ],
             "winding": options.question["wound"],
+            "rises_up_to_stretch": _rises(found.law),
         },
         "actuator": {
             "length_mm": found.subject.design.actuator.length,
@@ -208,6 +211,14 @@ def _summary(found: Prediction) -> dict[str, Any]:
         }
         data["solids"] = [_solid(found, mesh) for mesh in found.solids]
     return data
+
+
+def _rises(law: Law) -> dict[str, float | None]:
+    """Up to which stretch the law's responses rise; null where they always do."""
+    if not isinstance(law, Isotropic):
+        return {}
+    ends = law.stretch_range._asdict()
+    return {name: None if math.isinf(end) else round(end, DIGITS) for name, end in ends.items()}
 
 
 def _principal(found: Prediction) -> list[int]:

@@ -65,7 +65,7 @@ class RayEnds:
         return (
             not math.isnan(self.ratio)
             and self.ratio != 1
-            and not all(one is not None and one.status.is_physical for one in results)
+            and not all(one is not None and one.status.is_settled for one in results)
         )
 
     @property
@@ -76,7 +76,7 @@ class RayEnds:
         if self.ratio > AGREE:
             return Agreement.DIFFER
         known = all(
-            one.status.is_physical or one.status is Status.CONVERGED
+            one.status.is_settled or one.status is Status.CONVERGED
             for one in (self.standard, self.coarse)
         )
         return Agreement.AGREE if known else Agreement.UNKNOWN
@@ -86,7 +86,7 @@ class RayEnds:
         results = [one for one in (self.standard, self.coarse) if one is not None]
         if all(one.status is Status.CONVERGED for one in results):
             return True
-        return any(one.status.is_physical and one.critical == load for one in results)
+        return any(one.status.is_settled and one.critical == load for one in results)
 
 
 def _stable_up_to(ray: Ray, result: RayResult) -> float:

@@ -56,10 +56,10 @@ def _answered(found: Prediction) -> str:
 
 def _unanswered(found: Prediction) -> str:
     """Some have none: what happens first, and what of the workspace is lost."""
-    loaded, failed = int(found.is_loaded.sum()), found.not_computed
+    loaded, failed, beyond = int(found.is_loaded.sum()), found.not_computed, found.beyond_law
     parts = []
     first = found.first_to_end
-    lost = found.unanswered - failed
+    lost = found.unanswered - failed - beyond
     if first is not None and lost:
         ray, result = found.rays[first], found.result(first)
         parts.append(
@@ -70,6 +70,12 @@ def _unanswered(found: Prediction) -> str:
         parts.append(
             f"{lost} of {loaded} combinations {_have(lost)} no stable answer: "
             f"the beam's workspace at {found.largest:g} kPa {exists}"
+        )
+    left = found.first_to_leave
+    if beyond and left is not None:
+        parts.append(
+            f"{beyond} of {loaded} combinations {_have(beyond)} no answer that is known: "
+            f"{found.law.name} {_range(found)}, which {_passed(found, left)}"
         )
     worst = found.first_to_fail
     if failed and worst is not None:
@@ -87,7 +93,7 @@ def advice(found: Prediction) -> str | None:
     if not found.has_answers or found.unanswered == 0:
         return None
     first = found.first_to_end
-    if first is None or found.unanswered == found.not_computed:
+    if found.unanswered == found.not_computed:
         lost = None if found.first_to_fail is None else found.result(found.first_to_fail).status
         more = MORE.get(lost, "") if lost is not None else ""
         return f"try again with {more}another --size or --layers"
@@ -95,6 +101,8 @@ def advice(found: Prediction) -> str | None:
     stay = f"stay below {_down(box.pressure)} kPa in every supply ({_why(found, box)})"
     if not found.certain:
         stay += ", and ask again with a smaller --size or more --layers before relying on that"
+    if first is None:
+        return f"{stay}; or take a law that was fitted to larger stretches"
     if found.options.wound in (Wound.CHAMBERS, Wound.BOTH):
         return f"{stay}; or thicken the walls that give way"
     if found.result(first).status is Status.LIMIT_POINT and found.growth(first) >= BALLOON:
@@ -139,7 +147,7 @@ def _both(one: RayEnds) -> str:
     """Both figures."""
     results = (one.standard, one.coarse)
     said = [
-        f"{'' if result is not None and result.status.is_physical else 'above '}{load:.3g}"
+        f"{'' if result is not None and result.status.is_settled else 'above '}{load:.3g}"
         for load, result in zip(one.loads, results, strict=True)
     ]
     times = f" ({'at least ' if one.is_bound else ''}{one.ratio:.3g} times)"
@@ -150,12 +158,26 @@ def _on_the_coarse(one: RayEnds) -> str:
     """Where the same ray ends on the coarse mesh."""
     if one.coarse is None:
         return "on one mesh only"
-    load, physical = one.loads[1], one.coarse.status.is_physical
+    load, physical = one.loads[1], one.coarse.status.is_settled
     return f"{'' if physical else 'above '}{load:.3g} kPa on the coarse mesh"
 
 
 def _percent(share: float) -> str:
     return f"{100 * share:.3g} %"
+
+
+def _range(found: Prediction) -> str:
+    return f"describes stretches up to {found.law.most_stretch:.3g}"
+
+
+def _passed(found: Prediction, number: int) -> str:
+    """Where a ray leaves what the law describes."""
+    result, ray = found.result(number), found.rays[number]
+    said = f"is passed at {result.critical:.3g} kPa ({ray.text}"
+    if result.last is None:
+        return f"{said})"
+    x, y, z = np.round(result.last.stretch_at, 1) + 0.0
+    return f"{said}, near ({x:.1f}, {y:.1f}, {z:.1f}) mm)"
 
 
 def _have(count: int) -> str:

@@ -28,6 +28,8 @@ MEANINGS: Mapping[ReplyStatus, str] = {
     "wall of it snaps; beyond it there is no equilibrium near this one",
     Status.BUCKLED: "it leaves its path while the volume still grows; where few nodes move, "
     "a surface creases",
+    Status.BEYOND_LAW: "the largest stretch passes what the law describes: beyond it the response "
+    "falls that was fitted to a test; another law may have an answer",
     Status.INVERTED: "the mesh gave way, not the actuator: the computation ends here",
     Status.STEP_TOO_SMALL: "the computation could not follow its path any further",
     Status.LINEAR_SOLVER: "the tangent was singular, or too badly conditioned to solve",
