@@ -17,6 +17,7 @@ from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound_folder import claim_bound_folder, write_bound
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.model import parse
@@ -58,6 +59,7 @@ def _scene_of(subject: str, overrides: Sequence[str]) -> tuple[Scene, tuple[str,
     if kind == ".csv":
         return _scene_of_table(path, name, overrides)
     design = load_design(path)
+    say_findings(design)
     scene = Scene(
         name=name,
         actuator=design.actuator,
