@@ -69,7 +69,7 @@ def phenotypes(
             np.concatenate([getattr(points, name) for points in candidates])
             for name in ("x", "y", "type")
         )
-        steps, tiles = wall_steps(wall_elements), tiling(grid)
+        steps, tiles = wall_steps(wall_elements, rules), tiling(grid)
         integrals, runs = (grid.radial_integrals, grid.angular_integrals), room_for_runs(grid)
         if rules == UNSEALED:
             about = grid.domain, tiles, steps, grid.is_full_ring, *integrals
