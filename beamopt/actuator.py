@@ -37,7 +37,7 @@ def _incompressible(given: dict[str, Any]) -> float:
 class Actuator(Model):
     """The extruded body and its material; without a shear modulus it has G = E/3."""
 
-    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
+    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=0.1, high=1e5)
     youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
     shear_modulus: Number = Field(
         default_factory=_incompressible,

@@ -144,7 +144,7 @@ class Journal:
         judged = zip(search.ask(), verdicts, strict=True)
         record: dict[str, object] = {
             "generation": search.generation,
-            "stage": search.stage.value,
+            "stage": search.stage.key,
             "judged": [_entry(points, verdict, search.rules_set) for points, verdict in judged],
         }
         text = json.dumps(record, allow_nan=False, separators=(",", ":"))
@@ -183,7 +183,7 @@ def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     record = _decoded(line)
     if not isinstance(record, dict) or record.keys() != {"generation", "stage", "judged"}:
         return None
-    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.value):
+    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.key):
         return None
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):

@@ -21,12 +21,12 @@ from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import read_json
 from beamopt.outline.build import build_outline
+from beamopt.outline.ring import usual_sagitta
 from beamopt.provenance import provenance
 
 __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
 
 FORMATS = ("step", "stl", "svg", "dxf")
-SAGITTA = 0.04  # mm, as `Design.outline` has it
 THICKEST, COARSEST = 1000.0, 1.0  # mm
 MARKER = "export.json"
 FILES = {
@@ -109,7 +109,7 @@ def export_design(
     options = options or ExportOptions()
     formats, left_out = _formats(options)
     grid, length = design.grid.build(), design.actuator.length
-    sagitta, outline = SAGITTA, design.outline
+    sagitta, outline = usual_sagitta(grid), design.outline
     if options.tolerance is not None:
         sagitta = options.tolerance
         outline = build_outline(grid, design.source, design.seal.rules, sagitta)
