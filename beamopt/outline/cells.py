@@ -18,7 +18,7 @@ __all__ = ["regions", "territories"]
 
 SAME_PLACE = 1e-6  # mm; a point this near to an earlier one has no cell
 LATTICE = 1e-6  # mm; vertices that neighbouring cells share are the same after rounding to this
-FARTHEST = 1e6  # mm; beyond that a bisector's place is lost to rounding
+FARTHEST = 1e8  # mm; beyond that a bisector's place is lost to rounding
 
 
 def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
@@ -26,7 +26,7 @@ def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
     return _unions(points, np.ones(len(points), dtype=np.bool_), extent)
 
@@ -39,7 +39,7 @@ def territories(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
     return _unions(points, points.type != MATERIAL, extent)
 

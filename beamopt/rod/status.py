@@ -17,6 +17,7 @@ class RodStatus(Enum):
     UNRESOLVED = "the finest resolution does not resolve the shape"
     DIVERGED = "the iteration diverged"
     STEPS_TOO_SMALL = "the steps of the load became too small"
+    WORK_LIMIT = "work limit reached"
     TOO_SLOW = "took too long"
     SKIPPED = "not looked for, because another one failed"
     NOT_REPRESENTABLE = "the method can not represent this rod"

@@ -42,9 +42,12 @@ Pool = Callable[[int], AbstractContextManager[Executor]]
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """seconds : of processor time that a model may be expected to take; others are left out."""
+    """seconds : of processor time that a model may be expected to take; others are left out.
 
-    seconds: float = 1800.0
+    None are left out by default.
+    """
+
+    seconds: float = np.inf
 
 
 def run_chart(
@@ -140,8 +143,7 @@ def _begin(
         waiting = left[one.family]
         if one.family in busy:  # what is coming tells what the next one will cost
             continue
-        while waiting and _guessed(one, waiting[0], measured) > budget.seconds:
-            why = Ended(NoReply.TOO_DEAR, detail=f"more than {budget.seconds:g} s")
+        while waiting and (why := _too_dear(one, waiting[0], measured, budget)) is not None:
             keep(_without(question, waiting.pop(0), why))
         if waiting and len(running) < workers:
             model = waiting.pop(0)
@@ -149,8 +151,18 @@ def _begin(
     return bool(running)
 
 
+def _too_dear(
+    series: Series, model: Model, measured: dict[str, Measured], budget: Budget
+) -> Ended | None:
+    """Why a model is left out; None where it is asked."""
+    guess = _guessed(series, model, measured)
+    if guess > budget.seconds:
+        return Ended(NoReply.TOO_DEAR, detail=f"more than {budget.seconds:g} s")
+    return Ended(NoReply.NO_COARSER) if guess == np.inf else None
+
+
 def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:
-    """Seconds that a model will take, at least; infinite where a coarser one was left out."""
+    """Seconds that a model will take, at least; infinite where a coarser one has none."""
     if model in series.models:
         coarser = series.models[: series.models.index(model)]
         known = [measured[key_of(one)].seconds for one in coarser]

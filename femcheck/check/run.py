@@ -66,7 +66,7 @@ def check_design(
         _write(folder, checked)
         return checked
     stages = _stages(subject, options, *sections)
-    schedule = Schedule(stages, subject.design.pressures, options.seconds)
+    schedule = Schedule(stages, subject.design.pressures, options.limits)
     _take_kept(folder.cases, schedule)
     total = len(schedule.keys)
     digests = {stage.name: stage.solid.digest for stage in stages}
@@ -115,12 +115,19 @@ def _write(folder: CheckFolder, checked: Checked) -> None:
 
 
 def _take_kept(folder: Path, schedule: Schedule) -> None:
-    """Put the cases that were solved before among the results."""
+    """Put the cases that were solved before among the results.
+
+    What a limit ended is solved again, and with it all that builds on it: it began elsewhere then.
+    """
+    again: set[Key] = set()
     for stage in schedule.stages:
         shapes = Shapes(stage.solid.body())
         for key in (key for key in schedule.keys if key[0] == stage.name):
             known = read_case(folder, key, shapes, stage.solid.digest)
-            if known is not None and not known.status.is_interrupted:
+            is_final = known is None or known.is_final(schedule.limits)
+            if not is_final or schedule.builds_on(key, again):
+                again.add(key)
+            elif known is not None:
                 schedule.results[key] = known
 
 

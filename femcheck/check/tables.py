@@ -26,7 +26,7 @@ COMPARE = (
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
     "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
 )
 
 
@@ -89,9 +89,11 @@ def _table_csv(compared: Comparison) -> str:
         ]
     )
     pressures = subject.pressures.tolist()
-    rows = zip(pressures, columns, compared.final.statuses, strict=True)
+    final = compared.final
+    rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
     return csv_text(
-        TABLE, [(*map(plain, at), *cells(row), *both(status)) for at, row, status in rows]
+        TABLE,
+        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
     )
 
 
@@ -217,6 +219,7 @@ def _solid(checked: Checked, index: int) -> dict[str, Any]:
         "layers": layers,
         "unknowns": _unknowns(stage.solid),
         "iterations": sum(result.outcome.statistics.iterations for result in results),
+        "most_iterations": max(result.outcome.statistics.iterations for result in results),
         "converged": sum(result.status is Status.CONVERGED for result in results),
         "stability": _stability(stable),
     }
@@ -234,7 +237,7 @@ def _stability(negative: list[int | None]) -> str:
 
 
 def _timing(checked: Checked) -> Iterator[tuple[str, float, str]]:
-    """What the cases cost, summed over processes."""
+    """Processor time of the cases, summed over processes."""
     for stage in checked.stages:
         spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

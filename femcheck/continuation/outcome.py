@@ -20,6 +20,7 @@ class Status(Enum):
     INVERTED = "an element turned inside out"
     STEP_TOO_SMALL = "load steps became too small"
     LINEAR_SOLVER = "the linear solver found no solution"
+    WORK_LIMIT = "work limit reached"
     TIME_OUT = "time limit reached"
     STOPPED = "its process ended before it was solved"
 
@@ -41,10 +42,15 @@ class Status(Enum):
         """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
         return self.is_physical or self is Status.BEYOND_LAW
 
+    @property
+    def is_limit(self) -> bool:
+        """Whether a limit on work or on time ended it, and nothing that it computed."""
+        return self in (Status.WORK_LIMIT, Status.TIME_OUT)
+
 
 @dataclass
 class Statistics:
-    """What an equilibrium cost; sums over all its load steps."""
+    """What an equilibrium cost; sums over all its load steps. Seconds are of processor time."""
 
     steps: int = 0
     iterations: int = 0

@@ -62,11 +62,11 @@ class Mesher:
     """How gmsh is called.
 
     command : the executable; None takes the first on the path, then the one beside python.
-    seconds : time limit [s].
+    seconds : of a clock, after which gmsh is taken to hang; a mesh takes one or two [s].
     """
 
     command: str | None = None
-    seconds: float = 60.0
+    seconds: float = 600.0
 
     def mesh(self, outline: Outline, sizes: SectionSizes) -> SectionMesh | MeshFailure:
         """Triangulate a section, or say why that failed."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from beamopt.chart.methods import all_methods
 from beamopt.design import Design
@@ -55,13 +54,7 @@ def on_grid(design: Design, radial: int, angular: int) -> Design:
     grid = design.grid.model_copy(update={"radial": radial, "angular": angular})
     walls = design.wall_elements
     scaled = 2 * max(round(walls * radial / design.grid.radial / 2), min(walls, 1))
-    return _rebuilt(design, grid=grid.model_dump(), wall_elements=scaled)
-
-
-def _rebuilt(design: Design, **changes: Any) -> Design:
-    """A design that knows nothing yet of its section, with some keys changed."""
-    data = design.model_dump(by_alias=True, exclude_none=True)
-    return Design.model_validate(data | changes)
+    return design.model_copy(update={"grid": grid, "wall_elements": scaled})
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,11 +84,11 @@ class RodOnOutline:
     def reply(self, question: Question, workers: int = 0) -> Reply:
         """Of the design as it is, read anew: nothing known before makes it cheap."""
         design = question.design
-        rules = design.rod.model_dump()
+        rules = design.rod
         if self.tolerance is not None:
             share = self.tolerance / design.actuator.length
-            rules["tolerance"] = min(max(share, TIGHTEST), 0.1)
-        return _rod(question, _rebuilt(design, rod=rules), None)
+            rules = rules.model_copy(update={"tolerance": min(max(share, TIGHTEST), 0.1)})
+        return _rod(question, design.model_copy(update={"rod": rules}), None)
 
 
 def _rod(question: Question, design: Design, values: SectionValues | None) -> Reply:
@@ -136,7 +129,7 @@ class RodByMethod:
 
     def reply(self, question: Question, workers: int = 0) -> Reply:
         """Tips by this method, whether loads make it necessary or not; see `RodOnOutline`."""
-        design = _rebuilt(question.design)
+        design = question.design.model_copy()  # measured from scratch
         parents = parents_on_grid() if question.is_on_grid else None
         method = next(one for one in all_methods(parents) if one.name == self.method)
         model: RodModel = design.climb.model.on(Rung.LOADED)

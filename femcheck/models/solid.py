@@ -20,6 +20,7 @@ from femcheck.check.schedule import Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.work import solve_all
 from femcheck.continuation.ended import FOUND, Ended
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.law import Law
@@ -113,8 +114,8 @@ class SolidModel:
 class _TipRays(RayWork):
     """Rays that combinations lie on, and no others, of one mesh."""
 
-    def __init__(self, solid: Solid, rays: Sequence[Ray], used: set[int], seconds: float) -> None:
-        super().__init__({"standard": solid}, rays, seconds)
+    def __init__(self, solid: Solid, rays: Sequence[Ray], used: set[int], limits: Limits) -> None:
+        super().__init__({"standard": solid}, rays, limits)
         self.used = used
 
     @property
@@ -177,7 +178,7 @@ class _Solving:
 
     def _on_grid(self, low: Stage, high: Stage) -> tuple[list[CaseResult], list[CaseResult]]:
         """All 27, each predicted from its neighbours."""
-        schedule = Schedule((low, high), self.design.pressures, self.options.seconds)
+        schedule = Schedule((low, high), self.design.pressures, self.options.limits)
         solve_all(schedule, self.pool, self.workers, _keep_nothing)
         nodes = sorted(all_nodes(), key=lambda node: node_index(*node))
         first, second = (
@@ -188,7 +189,7 @@ class _Solving:
     def _at(self, low: Stage, high: Stage) -> tuple[list[CaseResult], list[CaseResult]]:
         """Each by itself, from rest."""
         pressures = self.question.pressures
-        work = PointWork((low.solid, high.solid), pressures, self.options.seconds)
+        work = PointWork((low.solid, high.solid), pressures, self.options.limits)
         solve_all(work, self.pool, self.workers, _keep_nothing)
         first, second = ([work.results[k, row] for row in range(len(pressures))] for k in (0, 1))
         return first, second
@@ -200,7 +201,7 @@ class _Solving:
         solid = self.solid("standard", options.law_for(self.design.actuator))
         rays, places = rays_of(self.question.pressures)
         used = {place[0] for place in places if place is not None}
-        work = _TipRays(solid, rays, used, options.seconds)
+        work = _TipRays(solid, rays, used, options.limits)
         solve_all(work, self.pool, self.workers, _keep_nothing)
         tips, endings = [], []
         for place in places:

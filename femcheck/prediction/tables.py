@@ -25,7 +25,7 @@ MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stre
 LIMITS = (
     "mesh,d1,d2,d3,status,ended,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
-    "mode_at_z,mode_share,points,iterations"
+    "mode_at_z,mode_share,points,steps,iterations"
 )
 AXIS = (
     "d1,d2,d3,load_kpa,z,extension,curvature_x,curvature_y,"
@@ -103,6 +103,7 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
             *_stretched(last),
             *cells([*result.mode_at, result.mode_share]),
             len(result.track),
+            result.statistics.steps,
             result.statistics.iterations,
         )
 
@@ -239,12 +240,13 @@ def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
         "unknowns": solid.body().unknowns,
         "rays": len(results),
         "iterations": sum(result.statistics.iterations for result in results),
+        "most_iterations": max(result.statistics.iterations for result in results),
         "stability": "checked by inertia" if found.is_checked else "not checked",
     }
 
 
 def _timing(found: Prediction) -> Iterator[tuple[str, float, str]]:
-    """What the rays cost, summed over processes."""
+    """Processor time of the rays, summed over processes."""
     for mesh in found.solids:
         spent = [result.statistics for key, result in found.results.items() if key[0] == mesh]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

@@ -36,7 +36,6 @@ __all__ = ["LAWS", "held_limit", "held_meshes", "held_solid"]
 
 LAYERS, FEWER = 3, 2
 NO_NUMBERS = "statuses are the same or not"
-SECONDS = 60.0  # of one case; it takes one or two
 NEWTON = 1e-7  # of the length: what its last step, 2e-4 mm, leaves, and 1/c² of an extrapolation
 PENALTY = 2500.0  # c of the equilibrium whose energy is held
 
@@ -54,18 +53,16 @@ class HeldLaw:
 
 
 LAWS = (
-    HeldLaw("solid, rigid-section", CheckOptions(seconds=SECONDS), ((0.2, 0, 0), (0, 0.15, 0.3))),
+    HeldLaw("solid, rigid-section", CheckOptions(), ((0.2, 0, 0), (0, 0.15, 0.3))),
     HeldLaw(
         "solid, compressible",
-        PredictionOptions(poisson_ratio=0.4, seconds=SECONDS),
+        PredictionOptions(poisson_ratio=0.4),
         ((0.05, 0, 0), (0, 0.04, 0.08)),
     ),
-    HeldLaw(
-        "solid, incompressible", PredictionOptions(seconds=SECONDS), ((0.05, 0, 0), (0, 0.04, 0.08))
-    ),
+    HeldLaw("solid, incompressible", PredictionOptions(), ((0.05, 0, 0), (0, 0.04, 0.08))),
     HeldLaw(
         "solid, wound",
-        PredictionOptions(wound=Wound.CHAMBERS, seconds=SECONDS),
+        PredictionOptions(wound=Wound.CHAMBERS),
         ((0, 0.1, 0.2),),
     ),
 )
@@ -133,7 +130,7 @@ def held_solid(held: HeldDesign, law: HeldLaw, *, estimate: bool) -> Iterator[He
 
 def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
     """The pressure of each supply alone beyond which there is no stable equilibrium."""
-    question = _question(held, PredictionOptions(seconds=SECONDS), np.eye(3)[:1])
+    question = _question(held, PredictionOptions(), np.eye(3)[:1])
     replies = [SolidModel(layers=LAYERS).reply(question)]
     if estimate:
         replies.append(SolidModel(layers=FEWER).reply(question))
@@ -184,7 +181,7 @@ def _volumes_of(result: CaseResult) -> FloatArray:
 
 
 def _case(held: HeldDesign, layers: int, pressures: FloatArray) -> CaseResult:
-    return solve_case(Case(_solid(held, layers), pressures, None, None, SECONDS))
+    return solve_case(Case(_solid(held, layers), pressures, None, None))
 
 
 def _solid(held: HeldDesign, layers: int) -> Solid:

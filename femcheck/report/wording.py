@@ -33,7 +33,9 @@ MEANINGS: Mapping[ReplyStatus, str] = {
     Status.INVERTED: "the mesh gave way, not the actuator: the computation ends here",
     Status.STEP_TOO_SMALL: "the computation could not follow its path any further",
     Status.LINEAR_SOLVER: "the tangent was singular, or too badly conditioned to solve",
-    Status.TIME_OUT: "more time (--seconds) may bring an answer",
+    Status.WORK_LIMIT: "more work (--iterations) may bring an answer",
+    Status.TIME_OUT: "the clock set by --seconds ran out, which depends on the machine; "
+    "--resume tries it again",
     Status.STOPPED: "it was killed or never begun; --resume goes on with it",
 }
 

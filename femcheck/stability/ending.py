@@ -21,6 +21,7 @@ class Ending(Enum):
     INVERTED = Status.INVERTED.value
     STEP_TOO_SMALL = Status.STEP_TOO_SMALL.value
     LINEAR_SOLVER = Status.LINEAR_SOLVER.value
+    WORK_LIMIT = Status.WORK_LIMIT.value
     TIME_OUT = Status.TIME_OUT.value
     STOPPED = Status.STOPPED.value
     NO_MESH = "no mesh"
@@ -33,8 +34,8 @@ class Ending(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether a clock or the death of its process ended it: a map that goes on tries again."""
-        return self in (Ending.TIME_OUT, Ending.STOPPED)
+        """Whether a map that goes on tries it once more, as of the `Status` of its name."""
+        return self.name in Status.__members__ and Status[self.name].is_interrupted
 
     @property
     def says_none(self) -> bool:

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
+from beamopt.files import csv_text
+from femcheck.report.content import read_table
 from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
@@ -43,6 +45,12 @@ def test_a_prediction_is_read(predicted: Path) -> None:
     assert ended is not None
     assert ended.status.is_physical
     assert found.ending(row) == str(replace(ended, load=found.ends_at[row]))
+
+
+def test_text_that_was_defused_is_shown_as_it_was(tmp_path: Path) -> None:
+    texts = ("=1+1", "'-x", "-1.5", "@a")
+    (tmp_path / "a.csv").write_text(csv_text("a,b,c,d", [texts]), encoding="utf-8")
+    assert read_table(tmp_path / "a.csv").rows == (texts,)
 
 
 def test_folders_are_found(checked: Path, predicted: Path, tmp_path: Path) -> None:
@@ -136,8 +144,8 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "mesh gone": (removed("deformed/20-0-0.vtu"), r"20-0-0\.vtu: is missing"),
     "tags gone": (removed("mesh.vtu"), r"mesh\.vtu: is missing"),
     "no displacement": (
-        replaced("deformed/20-0-0.vtu", 'Name="displacement"', 'Name="displaced"'),
-        r"20-0-0\.vtu: displacement: must be given",
+        replaced("deformed/20-0-0.vtu", 'Name="displacement_mm"', 'Name="displacement"'),
+        r"20-0-0\.vtu: displacement_mm: must be given",
     ),
     "no tags": (replaced("mesh.vtu", 'Name="tag"', 'Name="gat"'), r"mesh\.vtu: tag: must be given"),
 }
