@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-__all__ = ["cell_text", "csv_text", "json_text", "write_atomic"]
+__all__ = ["cell_text", "csv_text", "json_text", "write_atomic", "write_changed"]
 
 FORMULA = re.compile(r"'*[=+\-@\t\r]")  # also behind apostrophes: one more tells them apart
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
@@ -36,6 +36,20 @@ def write_atomic(path: Path, content: str | bytes) -> None:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_changed(path: Path, content: str | bytes) -> bool:
+    """Write a file as `write_atomic` does, unless it holds just that; says whether it wrote.
+
+    Raises
+    ------
+    OSError : the folder is missing or can not be written.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    if path.is_file() and path.read_bytes() == data:
+        return False
+    write_atomic(path, data)
+    return True
 
 
 def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:

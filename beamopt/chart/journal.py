@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +31,7 @@ class Journal:
     def __init__(self, path: Path, asked: dict[str, Any]) -> None:
         self.path = path
         self._lines = LineJournal(path, {"schema": SCHEMA, **asked}, "stability map")
-        try:
-            read = [_sample(asked["seed"], data) for data in self._lines.entries]
-        except (ValueError, KeyError, TypeError, AttributeError):
-            raise self._lines.damaged() from None
+        read = self._lines.read(partial(_sample, asked["seed"]))
         self.samples = {sample.case.index: sample for sample in read}
 
     def add(self, sample: Sample) -> None:

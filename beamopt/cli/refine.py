@@ -21,6 +21,7 @@ from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
 from beamopt.refinement_folder import write_refined_design
+from beamopt.result import EarlierRefinement
 from beamopt.scene import Scene, load_scene
 
 __all__ = ["refine_command", "refinement_lines", "stages_shown"]
@@ -31,18 +32,21 @@ def refine_command(
 ) -> None:
     """Refine the best design of a run, or a design for a scene; say what that came to."""
     if subject.is_dir():
-        scene, found, bound = _refined_run(subject, scene_name, out, overrides)
+        scene, found, bound, there = _refined_run(subject, scene_name, out, overrides)
         folder = subject
     else:
         scene, found, bound, folder = _refined_file(subject, scene_name, out, overrides)
+        there = EarlierRefinement.NONE
     console.print(f"[bold]{scene.name}[/], seed {scene.search.seed}")
     lines = [*refinement_lines(found, scene, bound), ("time", f"{found.seconds:.2f} s")]
-    there = [
+    if there is EarlierRefinement.BETTER:
+        lines.append(("note", there.value))
+    files = [
         name
         for name in ("refined.json", "refined.png", "refined_paths.csv")
         if (folder / name).exists()
     ]
-    for name, text in (*lines, ("files", f"{folder}/ ({', '.join(there)}, …)")):
+    for name, text in (*lines, ("files", f"{folder}/ ({', '.join(files)}, …)")):
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
         raise typer.Exit(1)
@@ -50,7 +54,7 @@ def refine_command(
 
 def _refined_run(
     run: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
-) -> tuple[Scene, Refinement, Certificate]:
+) -> tuple[Scene, Refinement, Certificate, EarlierRefinement]:
     for option, value in (("--scene", scene_name), ("--out", out)):
         if value is not None:
             said = "goes with a design file; a run folder has its scene, and gets the files"
@@ -68,7 +72,7 @@ def _refined_run(
         raise KeyboardInterrupt
     if result.refinement is None:
         raise InputError(run, "", None, f"no design to refine: {result.status.value}")
-    return scene, result.refinement, result.bound
+    return scene, result.refinement, result.bound, result.there
 
 
 def _check_ended(run: Path) -> None:

@@ -49,10 +49,7 @@ def measured_in(journal: LineJournal) -> dict[str, Measured]:
     ------
     InputError : the journal is damaged.
     """
-    try:
-        measured = {line["model"]: read(line) for line in journal.entries}
-    except (KeyError, TypeError, ValueError):
-        raise journal.damaged() from None
+    measured = dict(journal.read(lambda line: (line["model"], read(line))))
     return {name: one for name, one in measured.items() if is_final(one)}
 
 
@@ -80,14 +77,13 @@ def read_chart(folder: Path) -> Chart:
     """
     file = folder / JOURNAL
     try:
-        with file.open(encoding="utf-8") as stream:
-            asked = json.loads(stream.readline())
-        if asked["schema"] != SCHEMA:
+        journal = LineJournal(file, None, KIND)
+        if journal.asked["schema"] != SCHEMA:
             raise ValueError
-        question = _question(asked, file)
+        question = _question(journal.asked, file)
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(file, "", None, "no journal of a chart") from None
-    return chart_of(question, measured_in(LineJournal(file, asked, KIND)))
+    return chart_of(question, measured_in(journal))
 
 
 def _question(asked: dict[str, Any], file: Path) -> Question:

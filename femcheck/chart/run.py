@@ -143,7 +143,7 @@ def _begin(
         waiting = left[one.family]
         if one.family in busy:  # what is coming tells what the next one will cost
             continue
-        while waiting and (why := _too_dear(one, waiting[0], measured, budget)) is not None:
+        while waiting and (why := _too_dear(one, waiting[0], measured, budget)):
             keep(_without(question, waiting.pop(0), why))
         if waiting and len(running) < workers:
             model = waiting.pop(0)
@@ -156,9 +156,11 @@ def _too_dear(
 ) -> Ended | None:
     """Why a model is left out; None where it is asked."""
     guess = _guessed(series, model, measured)
+    if guess == np.inf:
+        return Ended(NoReply.UNKNOWN_COST)
     if guess > budget.seconds:
         return Ended(NoReply.TOO_DEAR, detail=f"more than {budget.seconds:g} s")
-    return Ended(NoReply.NO_COARSER) if guess == np.inf else None
+    return None
 
 
 def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:

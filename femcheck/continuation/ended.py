@@ -17,14 +17,14 @@ class NoReply(Enum):
 
     NOT_STIFF = "the raster has too little material to bend"
     TOO_DEAR = "left out: expected to take too long"
-    NO_COARSER = "left out: a coarser one has no answer"
+    UNKNOWN_COST = "left out: a coarser one has no answer"
     NOT_FINITE = "not a number"
     BROKEN = "no answer"
 
     @property
     def is_interrupted(self) -> bool:
         """Whether it may be otherwise another time: with more time allowed."""
-        return self in (NoReply.TOO_DEAR, NoReply.NO_COARSER)
+        return self in (NoReply.TOO_DEAR, NoReply.UNKNOWN_COST)
 
     @property
     def is_settled(self) -> bool:

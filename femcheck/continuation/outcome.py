@@ -38,14 +38,14 @@ class Status(Enum):
         return self in (Status.LIMIT_POINT, Status.BUCKLED)
 
     @property
-    def is_settled(self) -> bool:
-        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
-        return self.is_physical or self is Status.BEYOND_LAW
-
-    @property
     def is_limit(self) -> bool:
         """Whether a limit on work or on time ended it, and nothing that it computed."""
         return self in (Status.WORK_LIMIT, Status.TIME_OUT)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
+        return self.is_physical or self is Status.BEYOND_LAW
 
 
 @dataclass

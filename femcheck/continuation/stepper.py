@@ -164,17 +164,17 @@ class Stepper:
             return None
         return self._measured(outcome.state, load, outcome.negative_eigenvalues)[0]
 
-    def share_of_law(self, point: PathPoint) -> float:
-        """Largest stretch at a point over the largest of the law; 0 where that has no end."""
-        most = self._problem.law.most_stretch
-        return self._problem.largest_stretch(point.state)[0] / most if np.isfinite(most) else 0.0
-
     def _followed(self, guess: State, control: Control) -> Outcome:
         outcome = self._newton.follow(self._problem, guess, control, self._solver, self._budget)
         self.spent.add(outcome.statistics)
         if outcome.status.is_limit:
             raise Exhausted(outcome.status)
         return outcome
+
+    def share_of_law(self, point: PathPoint) -> float:
+        """Largest stretch at a point over the largest of the law; 0 where that has no end."""
+        most = self._problem.law.most_stretch
+        return self._problem.largest_stretch(point.state)[0] / most if np.isfinite(most) else 0.0
 
     def _to_stop(self, here: PathPoint, slope: Slope) -> tuple[float, float]:
         """Length to the next load asked for, and that load; infinite where there is none."""

@@ -53,11 +53,13 @@ def badge_of(run: SolidRun) -> Badge:
     if found is None:
         return Badge("no answer", "none")
     missing = int((found.loaded & ~found.answered).sum())
+    unsure = "" if run.is_certain else ", uncertain"
     if run.summary.flag("verdict.holds"):
-        return Badge("beam holds" if run.is_prediction else "agrees", "good")
+        said = "beam holds" if run.is_prediction else "agrees"
+        return Badge(said + unsure, "good" if run.is_certain else "none")
     if missing:
-        return Badge(f"{missing} of {int(found.loaded.sum())} without answer", "bad")
-    return Badge("beam is off" if run.is_prediction else "differs", "bad")
+        return Badge(f"{missing} of {int(found.loaded.sum())} without answer{unsure}", "bad")
+    return Badge(("beam is off" if run.is_prediction else "differs") + unsure, "bad")
 
 
 def meaning(ended: Ended | None) -> str:
