@@ -20,7 +20,7 @@ __all__ = ["Refinement", "refine_design", "refine_points"]
 class Refinement:
     """A refined design.
 
-    design : never worse than the one before in L + R nor in K.
+    design : in L + R and in K never worse than the points before were, judged by the scene's rules.
     refined : how it came about. seconds : time it took.
     """
 

@@ -17,7 +17,7 @@ from beamopt.judge import Status
 from beamopt.optimisation import optimize
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
-from beamopt.run_folder import summary
+from beamopt.run_summary import summary
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.workspace import loss

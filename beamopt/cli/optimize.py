@@ -20,10 +20,12 @@ from beamopt.judge import Status
 from beamopt.optimisation import optimize
 from beamopt.reach.reach import TOLERANCE
 from beamopt.refine.refine import StageRecord
-from beamopt.result import Optimisation
+from beamopt.result import EarlierRefinement, Optimisation
 from beamopt.scene import load_scene
 
 __all__ = ["optimize_command"]
+
+SHOWN = 0.5  # s; less is not worth a word
 
 
 def optimize_command(
@@ -82,6 +84,8 @@ def _report(result: Optimisation, folder: Path) -> None:
         lines.append(("no design", result.verdict.status.value))
     if result.refinement is not None:
         lines += refinement_lines(result.refinement, result.scene, result.bound)
+    if result.there not in (EarlierRefinement.NONE, EarlierRefinement.REPLACED):
+        lines.append(("note", result.there.value))
     lines += _rejected(result)
     lines.append(("time", _times(result)))
     lines.append(("files", f"{folder}/ ({', '.join(_worth_a_look(folder))}, …)"))
@@ -115,7 +119,9 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
 def _times(result: Optimisation) -> str:
     found = result.refinement
     refining = "" if found is None else f" searching, {found.seconds:.2f} s refining"
-    return f"{result.seconds:.2f} s{refining}"
+    compiling = result.timing.compiling
+    before = f" (and {compiling:.2f} s before, to compile)" if compiling >= SHOWN else ""
+    return f"{result.seconds:.2f} s{refining}{before}"
 
 
 def _total(result: Optimisation) -> list[tuple[str, str]]:

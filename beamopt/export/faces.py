@@ -214,9 +214,9 @@ def _check(faces: SectionFaces) -> None:
     import shapely
 
     for face in (*faces.pieces, *faces.chambers):
-        reason = shapely.is_valid_reason(polygon_of(face.contours))
-        if reason != "Valid Geometry":
-            said = f"no solid can be made of it: {reason.lower()}"
+        polygon = polygon_of(face.contours)
+        if not polygon.is_valid:
+            said = f"no solid can be made of it: {shapely.is_valid_reason(polygon).lower()}"
             raise InputError("design", face.name, None, said)
     if not faces.pieces:
         raise InputError("design", "", None, "no material")

@@ -25,6 +25,7 @@ from beamopt.outline.outline import Chamber, Loop, Outline, Piece
 from beamopt.outline.resampling import resample
 from beamopt.outline.ring import USUAL_RADIUS, fine_sagitta, ring_polygon, usual_sagitta
 from beamopt.outline.smoothing import Region, loops_of, parts_of, sealed_chambers
+from beamopt.section.cell_owners import points_with_cells
 from beamopt.section.drawing import Circle, Shape
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import THINNEST, PolarGrid
@@ -66,13 +67,15 @@ def build_outline(
 
     Raises
     ------
-    ValueError : a feature point farther than 4·10⁶ outer radii from the axis, a sagitta that is not
-        positive.
+    ValueError : a feature point that has a cell is farther than 4·10⁶ outer radii from the axis, or
+        the sagitta is not positive.
     """
     size = grid.outer_radius / USUAL_RADIUS
     sagitta = usual_sagitta(grid) if sagitta is None else sagitta
     if not 0 < sagitta < np.inf:
         raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
+    if isinstance(source, FeaturePoints):
+        source = points_with_cells(grid, source)
     usual = _at_usual_size(grid, source, rules, size)
     return _build(*usual, sagitta / size, inspected).scaled(size)
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.arrays import LabelArray
+from beamopt.section.cell_owners import points_with_cells
 from beamopt.section.drawing import Shape, rasterise
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import PolarGrid
@@ -54,6 +55,7 @@ class CrossSection:
         rules: SealRules = UNSEALED,
     ) -> CrossSection:
         """The Voronoi section of feature points, walled between supplies, or sealed."""
+        points = points_with_cells(grid, points)
         if rules != UNSEALED:
             return cls(grid, seal_points(grid, points, wall_steps(wall_elements, rules), rules))
         return cls(grid, _walled(grid, raster(grid, points), wall_elements))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from femcheck.material.invariant_kernels import fill_stiffness, fill_stress
+from femcheck.material.stretch_range import StretchRange, stretch_range
 from femcheck.material.tensors import invariants
 
 __all__ = ["Isotropic", "Moduli", "require"]
@@ -126,14 +128,25 @@ class Isotropic(ABC):
         """1/Λ [1/kPa] in the mixed form, 0 if incompressible; None in displacements alone."""
         return 1 / self.volumetric_modulus if self.is_mixed else None
 
+    @cached_property
+    def stretch_range(self) -> StretchRange:
+        """Up to which stretch its responses rise, the volume kept."""
+        return stretch_range(self._slopes, self.moduli.C2)
+
+    @property
+    def most_stretch(self) -> float:
+        """The largest principal stretch that it describes; ∞ where it describes all."""
+        return self.stretch_range.least
+
     @property
     def text(self) -> str:
-        """The energy with its constants and how it treats volume, as reports print it."""
-        modulus = self.volumetric_modulus
+        """Energy with constants, treatment of volume, and range, as reports print them."""
+        modulus, rises = self.volumetric_modulus, self.stretch_range.text
+        end = f"; {rises}" if rises else ""
         if math.isinf(modulus):
-            return f"{self._symbols}; incompressible, mixed displacement–pressure"
+            return f"{self._symbols}; incompressible, mixed displacement–pressure{end}"
         how = "mixed displacement–pressure" if self.is_mixed else "displacements only"
-        return f"{self._symbols}; Λ/2 (ln J)², Λ = {modulus:.4g} kPa, {how}"
+        return f"{self._symbols}; Λ/2 (ln J)², Λ = {modulus:.4g} kPa, {how}{end}"
 
     def energy(self, C: FloatArray) -> FloatArray:
         """W (n,) [kPa] at C (n, 6); +∞ where the law has none."""

@@ -15,6 +15,7 @@ from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.export import run as export_run
 from beamopt.export.run import FILES, FORMATS, ExportOptions, export_design
+from beamopt.export.step import is_installed
 from beamopt.outline.build import build_outline
 from beamopt.outline.faults import summaries
 from beamopt.seal import Seal
@@ -189,12 +190,16 @@ def test_what_is_missing_is_named(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setitem(sys.modules, package, None)
-    line = complaint(["export", str(SEALED)], capsys)
+    line = complaint(["export", str(SEALED), "--format", ",".join(FORMATS)], capsys)
     assert f"needs {package}: pip install 'beamopt[{extra}]', or leave {form} out" in line
     assert list(here.iterdir()) == []
-    rest = ",".join(one for one in FORMATS if one != form)
-    if form == "step":  # the others do without it
-        assert run(["export", str(SEALED), "--format", rest]) == 0
+    assert run(["export", str(SEALED), "--out", "out"]) == 0  # what can be written is
+    said = capsys.readouterr().out.splitlines()
+    assert f"note: {form} is left out: needs {package}: pip install 'beamopt[{extra}]'" in said
+    other = {"step": "ezdxf", "dxf": "gmsh"}[form]
+    can = [one for one in FORMATS if one != form and (one in ("stl", "svg") or is_installed(other))]
+    written = {name for name, one in FILES.items() if one in can}
+    assert names_in(here / "out") == {*written, "export.json", "provenance.json"}
 
 
 @pytest.mark.parametrize(

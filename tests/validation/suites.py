@@ -9,6 +9,7 @@ from tests.validation import (
     arc,
     genotypes,
     material,
+    never_worse,
     published_solids,
     refinement,
     regression,
@@ -33,4 +34,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "accuracy": accuracy.checks,
     "regression": regression.checks,
     "refinement": refinement.checks,
+    "never-worse": never_worse.checks,
 }

@@ -1,0 +1,20 @@
+"""Lines of journals, changed."""
+
+from beamopt.line_journal import with_digest, without_digest
+
+__all__ = ["rewritten", "without_digests"]
+
+
+def without_digests(journal: bytes) -> bytes:
+    """A search's journal as its first version was written."""
+    _, *lines = journal.decode().splitlines()
+    texts = ['{"schema":"beamopt-journal/1"}', *(str(without_digest(line)) for line in lines)]
+    return "".join(text + "\n" for text in texts).encode()
+
+
+def rewritten(line: str, old: str, new: str) -> str:
+    """A whole line with its first `old` replaced by `new`, as if it had been written like that."""
+    text = without_digest(line.rstrip("\n"))
+    assert text is not None
+    assert old in text
+    return with_digest(text.replace(old, new, 1)) + "\n"
