@@ -150,7 +150,8 @@ class Design(Model):
         """Drawn chambers too small for the elements that an unsealed section is made of."""
         if self.drawing is None or self.seal.rules.sealed:
             return
-        told = {fault.drawn for fault in self.outline.faults}
+        nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
+        told = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
         labels, (x, y) = self.section.labels, self.section.grid.centroids
         for number, shape in enumerate(chamber.build() for chamber in self.drawing):
             if number not in told and not (labels[shape.covers(x, y)] == shape.supply).any():

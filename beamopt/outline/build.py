@@ -83,8 +83,7 @@ def build_outline(
 def _at_usual_size(
     grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules, size: float
 ) -> tuple[PolarGrid, FeaturePoints | Sequence[Shape], SealRules]:
-    """The same section with an outer radius of 25 mm; lengths rounded to a lattice."""
-
+    """The same section with an outer radius of 25 mm; lengths rounded, so that sizes agree."""
     inner, skin, wall, rounding = (
         _usual(length, size)
         for length in (grid.inner_radius, rules.skin, rules.wall, rules.rounding)

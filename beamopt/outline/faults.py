@@ -150,13 +150,13 @@ def worst_first(faults: Iterable[Fault]) -> tuple[Fault, ...]:
 
 
 def summaries(faults: Iterable[Fault]) -> tuple[str, ...]:
-    """One line for each kind: its only fault, or how many there are and the first of them."""
-    kinds: dict[FaultKind, list[Fault]] = {}
+    """One line for each drawn chamber; of other kinds the only fault, or the first and how many."""
+    kinds: dict[tuple[FaultKind, int | None], list[Fault]] = {}
     for fault in faults:
-        kinds.setdefault(fault.status, []).append(fault)
+        kinds.setdefault((fault.status, fault.drawn), []).append(fault)
     return tuple(
         f"{kind.value} ({len(found)} places, first: {found[0]})"
         if len(found) > 1
         else str(found[0])
-        for kind, found in kinds.items()
+        for (kind, _), found in kinds.items()
     )
