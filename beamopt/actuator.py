@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from functools import partial
@@ -28,12 +29,23 @@ CUBIC_MM_PER_M3 = 1e9
 GRAMS_PER_KG = 1e3
 
 
-class Actuator(Model):
-    """The extruded body and its material."""
+def _incompressible(given: dict[str, Any]) -> float:
+    """G of E alone: E/(2(1 + ν)) with ν = ½ of rubber; the paper's 100 kPa for its E."""
+    return float(given["youngs_modulus"] / 3)
 
-    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
+
+class Actuator(Model):
+    """The extruded body and its material; without a shear modulus it has G = E/3."""
+
+    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=0.1, high=1e5)
     youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
-    shear_modulus: Number = quantity(100.0, "shear modulus G", unit="kPa", low=1, high=50_000)
+    shear_modulus: Number = Field(
+        default_factory=_incompressible,
+        description="shear modulus G",
+        ge=1,
+        le=50_000,
+        json_schema_extra={"unit": "kPa"},
+    )
 
 
 class SegmentChoice(Model):
@@ -50,6 +62,10 @@ class SegmentChoice(Model):
     def _has_one_section(self) -> SegmentChoice:
         if self.file is not None and self.section is not None:
             raise ValueError("either file or section")
+        try:
+            json.dumps(self.section, ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise ValueError("section: text with half a surrogate pair") from None
         return self
 
 

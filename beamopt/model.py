@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, get_args
+from typing import Annotated, Any, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
@@ -23,9 +24,48 @@ Count = Annotated[int, Field(strict=True)]
 
 
 class Model(BaseModel):
-    """Frozen, and unknown keys are refused."""
+    """Frozen, and unknown keys are refused.
+
+    A copy holds the keys' values only: what a cached property has computed stays with the object
+    that computed it. This holds for `model_copy`, `copy.copy`, `copy.deepcopy` and `pickle`.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy with the keys in `update` replaced; the whole is checked as if it was read.
+
+        Raises
+        ------
+        InputError : an unknown key, a value that is not allowed, or keys that contradict.
+        """
+        bare = copy.deepcopy(self) if deep else copy.copy(self)
+        if not update:
+            return bare
+        alias = {name: field.alias or name for name, field in type(self).model_fields.items()}
+        values = {alias[name]: getattr(bare, name) for name in self.model_fields_set}
+        changes = {alias.get(name, name): value for name, value in update.items()}
+        return parse(type(self), values | changes, type(self).__name__)
+
+    def __getstate__(self) -> dict[Any, Any]:
+        """Return the state to pickle, without cached values."""
+        state = super().__getstate__()
+        return state | {"__dict__": _own(type(self), state["__dict__"])}
+
+    def __copy__(self) -> Self:
+        """Return a copy without cached values."""
+        made = super().__copy__()
+        object.__setattr__(made, "__dict__", _own(type(self), made.__dict__))
+        return made
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        """Return a deep copy without cached values."""
+        return BaseModel.__deepcopy__(copy.copy(self), memo)
+
+
+def _own(model: type[BaseModel], values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a model's keys, without those of its cached properties."""
+    return {name: value for name, value in values.items() if name in model.model_fields}
 
 
 def quantity(

@@ -174,6 +174,7 @@ def summary(result: Optimisation) -> dict[str, Any]:
     return (
         {
             "status": result.status.value,
+            "ended": result.status.name,
             "scene": result.scene.name,
             "seed": result.scene.search.seed,
             "generations": result.history[-1].index,

@@ -95,6 +95,13 @@ class Scene(Model):
             raise ValueError("letters, digits, - and _")
         return name
 
+    @field_validator("description")
+    @classmethod
+    def _can_be_written(cls, described: str) -> str:
+        if any("\ud800" <= c <= "\udfff" for c in described):
+            raise ValueError("text without halves of surrogate pairs")
+        return described
+
     @model_validator(mode="after")
     def _leaves_room(self) -> Scene:
         self.seal.check_fits(self.grid.build())

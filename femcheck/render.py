@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 MATERIAL, BEAM = "#c4c4c4", "#101010"
+WIDTH_TO_HEIGHT = 0.9  # of one half of the image
+MARGIN = 0.9
 
 
 def _render(data: Path, image: Path) -> None:
@@ -44,8 +46,21 @@ def _render(data: Path, image: Path) -> None:
     eye = middle + np.array([*(300 * across), 90.0])
     plotter.camera_position = [tuple(eye), tuple(middle), (0.0, 0.0, 1.0)]
     plotter.reset_camera()
-    plotter.camera.zoom(1.25)
+    plotter.camera.zoom(_zoom(plotter.camera, np.vstack([scene["rest"], scene["now"]])))
     plotter.screenshot(str(image))
+
+
+def _zoom(camera: Any, points: Any) -> float:
+    """Factor by which the view may narrow so that all points stay within it, with a margin."""
+    ahead = np.subtract(camera.focal_point, camera.position)
+    ahead /= np.linalg.norm(ahead)
+    right = np.cross(ahead, camera.up)
+    right /= np.linalg.norm(right)
+    seen = points - np.array(camera.position)
+    depth = seen @ ahead
+    across = np.abs(seen @ right / depth).max() / WIDTH_TO_HEIGHT
+    upright = np.abs(seen @ np.cross(right, ahead) / depth).max()
+    return float(MARGIN * np.tan(np.radians(camera.view_angle / 2)) / max(across, upright))
 
 
 def _draw_section(plotter: Any, scene: dict[str, Any]) -> None:

@@ -20,6 +20,7 @@ FLOORS = [
         "beamopt.compiled",
         "beamopt.bundled",
         "beamopt.provenance",
+        "beamopt.old_wordings",
     ],
     [
         "beamopt.model",

@@ -1,11 +1,15 @@
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.model import parse
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 
@@ -42,6 +46,35 @@ def test_a_written_scene_is_read_as_the_same(tmp_path: Path) -> None:
         path = tmp_path / f"{name}.toml"
         path.write_text(scene_text(scene))
         assert load_scene(path) == scene
+
+
+ANY_TEXT = st.text(st.characters(exclude_categories=()))  # also halves of surrogate pairs
+
+
+@given(ANY_TEXT, st.dictionaries(ANY_TEXT, ANY_TEXT, max_size=2))
+@example("\x7f", {"\x7f": "\x7f"})
+@example("\ud800", {})
+@example("", {"a": "\ud800"})
+def test_any_text_is_read_as_it_was_written(described: str, notes: dict[str, str]) -> None:
+    """Or refused by its key: halves of surrogate pairs, which no file can hold."""
+    pieces = [{"share": 0.5}, {"share": 0.5, "section": {"notes": notes}}]
+    data = {"description": described, "rod": {"segments": pieces}}
+    whole = all(
+        one < "\ud800" or one > "\udfff" for one in "".join([described, *notes, *notes.values()])
+    )
+    if not whole:
+        with pytest.raises(InputError) as caught:
+            parse(Scene, data, "here")
+        assert caught.value.key in ("description", "rod.segments[1]")
+        return
+    scene = parse(Scene, data, "here")
+    assert parse(Scene, tomllib.loads(scene_text(scene)), "there") == scene
+
+
+def test_every_character_is_read_as_it_was_written() -> None:
+    every = "".join(chr(one) for one in range(0x3000) if not 0xD800 <= one < 0xE000)
+    scene = Scene(description=every)
+    assert tomllib.loads(scene_text(scene))["description"] == every
 
 
 def test_a_written_scene_names_every_key() -> None:

@@ -45,7 +45,7 @@ class Journal:
 def _data(sample: Sample) -> dict[str, Any]:
     return {
         "index": sample.case.index,
-        "witness": sample.witness.value,
+        "witness": sample.witness.name,
         "truth": sample.truth.name,
         "gap": sample.gap,
         "seconds": sample.seconds,
@@ -65,5 +65,6 @@ def _sample(seed: int, data: dict[str, Any]) -> Sample:
         Row(case, method, resolution, Verdict[verdict], RodStatus[status], distance, seconds)
         for method, resolution, verdict, status, distance, seconds in data["rows"]
     )
-    witness, truth = Witness(data["witness"]), RodStatus[data["truth"]]
+    # version 0 wrote names in small letters
+    witness, truth = Witness[data["witness"].upper()], RodStatus[data["truth"]]
     return Sample(case, witness, truth, data["gap"], rows, data["seconds"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
 from beamopt.model import read_json
+from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
@@ -73,13 +74,19 @@ def _refined_run(
 def _check_ended(run: Path) -> None:
     """Refuse a run whose search would go on."""
     summary = run / "summary.json"
-    said = read_json(summary).get("status") if summary.exists() else "not ended"
-    if said in ("not ended", StopReason.INTERRUPTED.value, StopReason.SECONDS.value):
+    ended = _ended(read_json(summary)) if summary.exists() else None
+    if ended is None or ended.goes_on:
         allowed = (
             "a search that ended: go on with it by `beamopt optimize --resume`, or refine its "
             f"{run / 'best.json'} with --scene {run / 'scene.toml'}"
         )
-        raise InputError(summary, "status", said, allowed)
+        raise InputError(summary, "ended", "not ended" if ended is None else ended.value, allowed)
+
+
+def _ended(summary: Mapping[str, object]) -> StopReason | None:
+    """How a search ended by its summary; None where that does not say."""
+    name = summary.get("ended", OLD_STOP_REASONS.get(str(summary.get("status"))))
+    return StopReason.__members__.get(str(name))
 
 
 def _refined_file(

@@ -130,7 +130,7 @@ class Journal:
         judged = zip(search.ask(), verdicts, strict=True)
         record: dict[str, object] = {
             "generation": search.generation,
-            "stage": search.stage.value,
+            "stage": search.stage.key,
             "judged": [_entry(points, verdict, search.rules_set) for points, verdict in judged],
         }
         self._append(_line(record))
@@ -163,7 +163,7 @@ def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     record = _decoded(line)
     if not isinstance(record, dict):
         return None
-    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.value):
+    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.key):
         return None
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):

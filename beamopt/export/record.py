@@ -8,7 +8,7 @@ from beamopt.design import Design
 from beamopt.export.bodies import Solid
 from beamopt.export.drawing import Drawing
 from beamopt.export.faces import SectionFaces
-from beamopt.outline.faults import Fault
+from beamopt.outline.faults import Fault, FaultKind
 from beamopt.section.feature_points import SUPPLIES
 
 __all__ = ["SCHEMA", "export_record", "notes_on"]
@@ -66,11 +66,13 @@ def notes_on(design: Design, faults: Iterable[Fault]) -> tuple[str, ...]:
 
 def _faults(design: Design, faults: Iterable[Fault]) -> Iterator[str]:
     """One line: every kind, the worst first, with how often it is found and its first place."""
-    kinds: dict[str, list[Fault]] = {}
+    kinds: dict[FaultKind, list[Fault]] = {}
     for fault in faults:
-        kinds.setdefault(fault.status.value, []).append(fault)
+        kinds.setdefault(fault.status, []).append(fault)
     named = "; ".join(
-        f"{kind} ({len(found)} places, first: {found[0]})" if len(found) > 1 else str(found[0])
+        f"{kind.value} ({len(found)} places, first: {found[0]})"
+        if len(found) > 1
+        else str(found[0])
         for kind, found in kinds.items()
     )
     if not design.seal.rules.sealed:

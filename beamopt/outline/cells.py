@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["regions", "territories"]
 
 LATTICE = 1e-6  # mm; vertices that neighbouring cells share are the same after rounding to this
-FARTHEST = 1e6  # mm; beyond that a bisector's place is lost to rounding
+FARTHEST = 1e8  # mm; beyond that a bisector's place is lost to rounding
 
 
 def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
@@ -24,7 +24,7 @@ def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
     return _unions(_in_order(points), extent)
 
@@ -37,7 +37,7 @@ def territories(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
     points = _in_order(points)
     own = points.type != MATERIAL

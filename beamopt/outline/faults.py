@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 __all__ = ["Fault", "FaultKind", "Severity"]
@@ -63,6 +63,16 @@ class Fault:
     def severity(self) -> Severity:
         """Notice, violation or fatal."""
         return self.status.severity
+
+    def scaled(self, by: float) -> Fault:
+        """The same in a section that is `by` times as large."""
+        power = {FaultKind.ISLAND: 2, FaultKind.PIECES: 0}.get(self.status, 1)
+        return replace(
+            self,
+            value=by**power * self.value,
+            place=self.place and (by * self.place[0], by * self.place[1]),
+            asked=None if self.asked is None else by * self.asked,
+        )
 
     def __str__(self) -> str:
         where = ""

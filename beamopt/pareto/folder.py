@@ -95,6 +95,7 @@ def _summary(front: Front) -> dict[str, object]:
     rejected = {one.name: front.rejected[one] for one in Status if one in front.rejected}
     return {
         "status": front.status.value,
+        "ended": front.status.name,
         "scene": front.scene.name,
         "seed": front.scene.search.seed,
         "objectives": list(front.objectives),

@@ -14,7 +14,7 @@ from beamopt.errors import InputError
 from beamopt.line_journal import LineJournal
 from beamopt.model import parse
 from femcheck.chart.chart import Chart
-from femcheck.chart.lineup import line_up
+from femcheck.chart.lineup import line_up, mark_of
 from femcheck.chart.measure import Measured, is_final, key_of, read
 from femcheck.chart.reference import reference_of
 from femcheck.check.options import CheckOptions
@@ -67,7 +67,8 @@ def chart_of(question: Question, measured: Mapping[str, Measured]) -> Chart:
         measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
     ]
     aside = {key_of(model) for one in series for model in (one.sized, one.stiffer) if model}
-    return Chart.of(question, known, reference_of(question, series, measured), aside)
+    marks = {key_of(model): mark_of(model) for one in series for model in one.all}
+    return Chart.of(question, known, reference_of(question, series, measured), aside, marks)
 
 
 def read_chart(folder: Path) -> Chart:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.arrays import FloatArray, IndexArray
 from beamopt.workspace import NODES, node_index
 from femcheck.check.case import CaseResult
 from femcheck.check.schedule import Key
@@ -34,6 +34,7 @@ class Tips:
     volume_ratios : (27, 3) of each supply's chambers to their undeformed volume; NaN without any.
     statuses : (27,) how each case ended.
     reached : (27,) share of the load at the last equilibrium; 1 with an answer.
+    iterations : (27,) that were spent on it.
     """
 
     mesh: str
@@ -42,6 +43,7 @@ class Tips:
     volume_ratios: FloatArray
     statuses: tuple[Status, ...]
     reached: FloatArray
+    iterations: IndexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,16 +168,18 @@ def compare(
 def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:
     tips, ratios = np.full((NODES, 3), np.nan), np.full((NODES, 3), np.nan)
     statuses, reached = [Status.STOPPED] * NODES, np.zeros(NODES)
+    iterations = np.zeros(NODES, dtype=np.int64)
     centroid = np.append(stage.solid.section.moments.centroid, 0.0)
     undeformed = stage.solid.section.moments.chamber_areas * subject.design.actuator.length
     for node in all_nodes():
         result, row = results[stage.name, node], node_index(*node)
         statuses[row], reached[row] = result.status, result.outcome.reached
+        iterations[row] = result.outcome.statistics.iterations
         if result.outcome.state is not None and result.volumes is not None:
             tips[row] = result.outcome.state.tip - centroid
             with np.errstate(invalid="ignore", divide="ignore"):
                 ratios[row] = np.where(undeformed > 0, result.volumes / undeformed, np.nan)
-    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached)
+    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached, iterations)
 
 
 def _extrapolated(low: Tips, high: Tips) -> Tips:
@@ -188,4 +192,5 @@ def _extrapolated(low: Tips, high: Tips) -> Tips:
         for first, second in zip(low.statuses, high.statuses, strict=True)
     ]
     reached = np.minimum(low.reached, high.reached)
-    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached)
+    spent = low.iterations + high.iterations
+    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached, spent)

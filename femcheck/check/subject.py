@@ -141,7 +141,6 @@ def sealed_copy(name: str, design: Design, skin: float) -> Subject:
     # walls in mm take the place of walls of elements, which an outline can not have
     changes = {"seal": seal, "wall_elements": 0, "notes": {"sealed_copy_of": name}}
     sealed = design.model_copy(update=changes)
-    sealed = Design.model_validate(sealed.model_dump(by_alias=True, exclude_none=True))
     moved = np.linalg.norm(sealed.workspace.tips - design.workspace.tips, axis=1)
     return Subject(name, sealed, moved)
 
@@ -154,9 +153,8 @@ def slender_copy(subject: Subject, slenderness: float) -> Subject:
     ValueError : a length that no design can have.
     """
     length = slenderness * 2 * subject.design.grid.outer_radius
-    actuator = subject.design.actuator.model_dump() | {"length": length}
-    changed = subject.design.model_dump(by_alias=True, exclude_none=True) | {"actuator": actuator}
-    return replace(subject, design=Design.model_validate(changed))
+    actuator = subject.design.actuator.model_copy(update={"length": length})
+    return replace(subject, design=subject.design.model_copy(update={"actuator": actuator}))
 
 
 def check_sealed(name: str, design: Design) -> None:

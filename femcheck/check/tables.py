@@ -11,21 +11,22 @@ import numpy as np
 from beamopt.files import csv_text, json_text
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
+from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 
-__all__ = ["COMPARE", "cells", "plain", "summary", "tables_of", "verdict"]
+__all__ = ["COMPARE", "both", "cells", "plain", "summary", "tables_of", "verdict"]
 
 DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
 
 COMPARE = (
     "law,c,nu,mesh,p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,"
     "difference_of_length,difference_of_displacement,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended"
 )
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
     "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
 )
 
 
@@ -66,7 +67,7 @@ def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(solid.volume_ratios[row]),
-                solid.statuses[row].value,
+                *both(solid.statuses[row]),
             )
 
 
@@ -88,10 +89,17 @@ def _table_csv(compared: Comparison) -> str:
         ]
     )
     pressures = subject.pressures.tolist()
-    rows = zip(pressures, columns, compared.final.statuses, strict=True)
+    final = compared.final
+    rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
     return csv_text(
-        TABLE, [(*map(plain, at), *cells(row), status.value) for at, row, status in rows]
+        TABLE,
+        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
     )
+
+
+def both(status: Status) -> tuple[str, str]:
+    """Cells of the columns "status" and "ended": the text for people, the key for programs."""
+    return status.value, Ended(status).key
 
 
 def plain(value: float) -> object:
@@ -211,6 +219,7 @@ def _solid(checked: Checked, index: int) -> dict[str, Any]:
         "layers": layers,
         "unknowns": _unknowns(stage.solid),
         "iterations": sum(result.outcome.statistics.iterations for result in results),
+        "most_iterations": max(result.outcome.statistics.iterations for result in results),
         "converged": sum(result.status is Status.CONVERGED for result in results),
         "stability": _stability(stable),
     }
@@ -228,7 +237,7 @@ def _stability(negative: list[int | None]) -> str:
 
 
 def _timing(checked: Checked) -> Iterator[tuple[str, float, str]]:
-    """What the cases cost, summed over processes."""
+    """Processor time of the cases, summed over processes."""
     for stage in checked.stages:
         spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

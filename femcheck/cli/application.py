@@ -99,13 +99,24 @@ def run_designs(
         str, typer.Option(help="wedge18; hex27, tet10 and tet4 to compare.")
     ] = "wedge18",
     solver: Annotated[str, typer.Option(help="auto, pardiso or superlu.")] = "auto",
-    seconds: Annotated[float, typer.Option(metavar="S", help="Time limit of one case.")] = 600.0,
+    iterations: Annotated[
+        int,
+        typer.Option(min=1, help="Work limit of one case or ray: Newton's iterations."),
+    ] = 2000,
+    seconds: Annotated[
+        float,
+        typer.Option(
+            metavar="S",
+            help="Clock limit of one case or ray, as a last resort: what it ends depends on the "
+            "machine, and --resume tries it again. None if left out.",
+        ),
+    ] = math.inf,
     gmsh: Annotated[
         str | None, typer.Option(help="The gmsh executable; found by itself if left out.")
     ] = None,
     gmsh_seconds: Annotated[
-        float, typer.Option(metavar="S", help="Time limit of one mesh.")
-    ] = 60.0,
+        float, typer.Option(metavar="S", help="Clock limit of one mesh, against a gmsh that hangs.")
+    ] = 600.0,
     accuracy: Annotated[
         str | None,
         typer.Option(
@@ -117,7 +128,11 @@ def run_designs(
         str, typer.Option(help="With --accuracy: beam or solid, instead of the cheaper one.")
     ] = "auto",
     budget: Annotated[
-        float, typer.Option(metavar="S", help="With --accuracy: longest a model may take.")
+        float,
+        typer.Option(
+            metavar="S",
+            help="With --accuracy: processor time that a model may be expected to take.",
+        ),
     ] = math.inf,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
         False
@@ -147,6 +162,7 @@ def run_designs(
             size=size,
             element=element,
             solver=solver,
+            iterations=iterations,
             seconds=seconds,
             gmsh=gmsh,
             gmsh_seconds=gmsh_seconds,
@@ -177,8 +193,12 @@ def chart_models(
         typer.Option(help="raster, beam, wedge18, …; may be given again. All if left out."),
     ] = None,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="Models expected to take longer are left out.")
-    ] = 1800.0,
+        float,
+        typer.Option(
+            metavar="S",
+            help="Leave out models expected to take more processor time. None if left out.",
+        ),
+    ] = math.inf,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Models asked at once.")] = 2,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on; where all is there, only draw it again.")

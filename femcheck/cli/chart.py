@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
@@ -40,7 +39,7 @@ class ChartRequest:
 
 def chart_command(request: ChartRequest) -> None:
     """Ask every model, show progress, and say which is the cheapest."""
-    if not 0 < request.seconds < np.inf:
+    if not request.seconds > 0:
         raise InputError("--seconds", "", request.seconds, "above 0 s")
     law = options_of(request.law)
     name, design = named_design(request.source)

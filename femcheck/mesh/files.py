@@ -1,4 +1,9 @@
-"""Volume meshes as files that other programs read, with their tags."""
+"""Volume meshes as files that other programs read, with their tags; lengths in mm.
+
+A linear wedge is numbered as gmsh and VTK from version 9.7 on number it: the normal of corners
+0, 1, 2 points towards corners 3, 4, 5. Older VTK has it the other way round: it reads the same
+shapes, with volumes of the other sign.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +16,15 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from femcheck.mesh.extrusion import Extrusion
 
-__all__ = ["TAGS", "write_deformed", "write_mesh"]
+__all__ = ["DISPLACEMENT", "TAGS", "VTU_WEDGE", "write_deformed", "write_mesh"]
+
+DISPLACEMENT = "displacement_mm"
+"""Point data of a deformed mesh: the file's points are undeformed, points plus this deformed."""
+
+VTU_WEDGE = [0, 2, 1, 3, 5, 4]
+"""From a wedge's corners to those to give to meshio, which writes the older VTK's order to a .vtu.
+
+It is its own inverse: also what meshio reads from such a file is put in order by it."""
 
 TAGS = {
     "surface": (1, 2),
@@ -42,11 +55,14 @@ def write_mesh(folder: Path, body: Extrusion) -> None:
     marked: Any = {"gmsh:physical": tags, "gmsh:geometrical": tags}
     mesh = meshio.Mesh(body.points, cells, cell_data=marked, field_data=groups)
     _write(folder / "mesh.msh", mesh, "gmsh22")
+    cells[0] = ("wedge", body.wedges[:, VTU_WEDGE])
     _write(folder / "mesh.vtu", meshio.Mesh(body.points, cells, cell_data={"tag": tags}), "vtu")
 
 
 def write_deformed(file: Path, body: Extrusion, at: FloatArray) -> None:
-    """Write the deformed wedges with their displacement [mm] and axial stretch.
+    """Write the undeformed wedges with the displacement of their corners and their axial stretch.
+
+    Point data "displacement_mm", cell data "stretch"; points and displacement add to the shape.
 
     at : (n, 3) positions of the corners [mm].
     """
@@ -56,9 +72,9 @@ def write_deformed(file: Path, body: Extrusion, at: FloatArray) -> None:
     low, high = body.points[body.wedges[:, 0], 2], body.points[body.wedges[:, 3], 2]
     stretch = np.linalg.norm(upper - lower, axis=1) / (high - low)
     mesh = meshio.Mesh(
-        at,
-        [("wedge", body.wedges)],
-        point_data={"displacement": at - body.points},
+        body.points,
+        [("wedge", body.wedges[:, VTU_WEDGE])],
+        point_data={DISPLACEMENT: at - body.points},
         cell_data={"stretch": [stretch]},
     )
     _write(file, mesh, "vtu")

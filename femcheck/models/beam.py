@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from beamopt.chart.methods import all_methods
 from beamopt.design import Design
 from beamopt.rod.ladder import RodModel, Rung, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.rod.status import RodStatus
+from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND, Reply, nothing
+from femcheck.models.reply import Reply, nothing
 
 __all__ = ["TIGHTEST", "ArcOnGrid", "RodByMethod", "RodOnOutline", "on_grid"]
 
@@ -46,7 +45,7 @@ class ArcOnGrid:
         """Of the same section on this grid."""
         design = on_grid(question.design, self.radial, self.angular)
         if not design.section.moments.is_stiff:
-            return nothing(question, "the raster has too little material to bend")
+            return nothing(question, Ended(NoReply.NOT_STIFF))
         return _rod(question, design, SectionValues(design.section.moments))
 
 
@@ -55,13 +54,7 @@ def on_grid(design: Design, radial: int, angular: int) -> Design:
     grid = design.grid.model_copy(update={"radial": radial, "angular": angular})
     walls = design.wall_elements
     scaled = 2 * max(round(walls * radial / design.grid.radial / 2), min(walls, 1))
-    return _rebuilt(design, grid=grid.model_dump(), wall_elements=scaled)
-
-
-def _rebuilt(design: Design, **changes: Any) -> Design:
-    """A design that knows nothing yet of its section, with some keys changed."""
-    data = design.model_dump(by_alias=True, exclude_none=True)
-    return Design.model_validate(data | changes)
+    return design.model_copy(update={"grid": grid, "wall_elements": scaled})
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,11 +84,11 @@ class RodOnOutline:
     def reply(self, question: Question, workers: int = 0) -> Reply:
         """Of the design as it is, read anew: nothing known before makes it cheap."""
         design = question.design
-        rules = design.rod.model_dump()
+        rules = design.rod
         if self.tolerance is not None:
             share = self.tolerance / design.actuator.length
-            rules["tolerance"] = min(max(share, TIGHTEST), 0.1)
-        return _rod(question, _rebuilt(design, rod=rules), None)
+            rules = rules.model_copy(update={"tolerance": min(max(share, TIGHTEST), 0.1)})
+        return _rod(question, design.model_copy(update={"rod": rules}), None)
 
 
 def _rod(question: Question, design: Design, values: SectionValues | None) -> Reply:
@@ -107,8 +100,7 @@ def _rod(question: Question, design: Design, values: SectionValues | None) -> Re
 
 
 def _answered(tips: Tips) -> Reply:
-    reasons = [FOUND if one is RodStatus.CONVERGED else one.value for one in tips.status]
-    return Reply(tips.positions, tuple(reasons))
+    return Reply(tips.positions, tuple(Ended(one) for one in tips.status))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +129,7 @@ class RodByMethod:
 
     def reply(self, question: Question, workers: int = 0) -> Reply:
         """Tips by this method, whether loads make it necessary or not; see `RodOnOutline`."""
-        design = _rebuilt(question.design)
+        design = question.design.model_copy()  # measured from scratch
         parents = parents_on_grid() if question.is_on_grid else None
         method = next(one for one in all_methods(parents) if one.name == self.method)
         model: RodModel = design.climb.model.on(Rung.LOADED)

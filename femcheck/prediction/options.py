@@ -53,8 +53,8 @@ class PredictionOptions(SolidOptions):
     def law_for(self, actuator: Actuator) -> Law:
         """The law of an actuator's material.
 
-        A shear modulus of E/3, which designs have by default, goes with every ν: it says no more
-        than that nothing else was asked for.
+        A design without a shear modulus has E/3, which goes with every ν: what was not given
+        contradicts nothing.
 
         Raises
         ------

@@ -26,8 +26,6 @@ __all__ = ["Prediction"]
 
 SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
 STILL = 1e-9  # mm
-PHYSICAL = {Status.LIMIT_POINT, Status.BUCKLED}
-"""Ends that the actuator has; the others are the computation's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,12 +169,12 @@ class Prediction:
     @property
     def first_to_end(self) -> int | None:
         """The ray whose stable part ends at the lowest load; None where none ends."""
-        return self._first(PHYSICAL)
+        return self._first({status for status in Status if status.is_physical})
 
     @property
     def first_to_fail(self) -> int | None:
         """The ray that the computation lost at the lowest load; None where it lost none."""
-        return self._first(set(Status) - PHYSICAL - {Status.CONVERGED})
+        return self._first({status for status in Status if _is_lost(status)})
 
     def _first(self, statuses: set[Status]) -> int | None:
         found = [n for n in range(len(self.rays)) if self.result(n).status in statuses]
@@ -185,8 +183,7 @@ class Prediction:
     @property
     def not_computed(self) -> int:
         """Combinations without an answer because the computation lost their rays."""
-        lost = PHYSICAL | {Status.CONVERGED}
-        return sum(self.status(row) not in lost for row in range(len(self.places)))
+        return sum(_is_lost(self.status(row)) for row in range(len(self.places)))
 
     @property
     def is_checked(self) -> bool:
@@ -207,3 +204,8 @@ class Prediction:
     def holds(self) -> bool:
         """Whether every combination has a stable answer and the beam is near enough to all."""
         return self.has_answers and self.unanswered == 0 and self.worst <= self.options.agree
+
+
+def _is_lost(status: Status) -> bool:
+    """Whether the computation lost a ray: neither an answer nor an end that the actuator has."""
+    return status is not Status.CONVERGED and not status.is_physical

@@ -33,7 +33,6 @@ from femcheck.prediction.work import RayKey, RayWork
 
 __all__ = ["predict_design"]
 
-AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a prediction that goes on tries these once more
 FIGURES = ("paths", "axis")
 
 Progress = Callable[[int, int, str], None]
@@ -78,11 +77,11 @@ def predict_design(
         for mesh, section in zip(("standard", "coarse"), sections, strict=True)
     }
     rays, places = rays_of(subject.pressures)
-    work = RayWork(solids, rays, options.seconds)
+    work = RayWork(solids, rays, options.limits)
     digests = {key: _digest(solids[key[0]], work, key) for key in work.keys}
     for key in work.keys:
         kept = read_ray(_file(folder, work, key), digests[key])
-        if kept is not None and kept.status not in AGAIN:
+        if kept is not None and kept.is_final(options.limits):
             work.results[key] = kept
 
     def keep(key: RayKey, result: RayResult) -> None:

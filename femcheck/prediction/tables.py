@@ -10,7 +10,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
-from femcheck.check.tables import COMPARE, DIGITS, cells, plain
+from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
 from femcheck.material.catalogue import constants_of
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.prediction import Prediction
@@ -21,9 +21,9 @@ __all__ = ["tables_of"]
 
 MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z"
 LIMITS = (
-    "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
+    "mesh,d1,d2,d3,status,ended,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
-    "mode_at_z,mode_share,points,iterations"
+    "mode_at_z,mode_share,points,steps,iterations"
 )
 AXIS = (
     "d1,d2,d3,load_kpa,z,extension,curvature_x,curvature_y,"
@@ -69,7 +69,7 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(_ratios(found, mesh, answer)),
-                found.status(row, mesh).value,
+                *both(found.status(row, mesh)),
                 *cells([found.ended_at(row, mesh), found.snap(row, mesh)]),
                 *_stretched(answer),
             )
@@ -95,12 +95,13 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
         yield (
             mesh,
             *map(plain, found.rays[number].direction),
-            result.status.value,
+            *both(result.status),
             *cells([result.critical, math.nan if last is None else last.load]),
             *cells(_ratios(found, mesh, last)),
             *_stretched(last),
             *cells([*result.mode_at, result.mode_share]),
             len(result.track),
+            result.statistics.steps,
             result.statistics.iterations,
         )
 
@@ -196,6 +197,7 @@ def _limit(found: Prediction, number: int) -> dict[str, Any]:
     return {
         "of": ray.text,
         "status": result.status.value,
+        "ended": result.status.name,
         "ends_at_kpa": _number(result.critical),
         "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),
         "volume_ratios": [_number(value) for value in ratios.tolist()],
@@ -227,12 +229,13 @@ def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
         "unknowns": solid.body().unknowns,
         "rays": len(results),
         "iterations": sum(result.statistics.iterations for result in results),
+        "most_iterations": max(result.statistics.iterations for result in results),
         "stability": "checked by inertia" if found.is_checked else "not checked",
     }
 
 
 def _timing(found: Prediction) -> Iterator[tuple[str, float, str]]:
-    """What the rays cost, summed over processes."""
+    """Processor time of the rays, summed over processes."""
     for mesh in found.solids:
         spent = [result.statistics for key, result in found.results.items() if key[0] == mesh]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

@@ -7,6 +7,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
 from femcheck.check.case import Solid
+from femcheck.continuation.limits import Limits
 from femcheck.prediction.ray_trace import RayResult, RayTask, stopped_ray, trace_ray
 from femcheck.prediction.rays import Ray
 
@@ -21,12 +22,12 @@ class RayWork:
     """What is to be traced; see `femcheck.check.work`.
 
     solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, for an
-    estimate of the mesh's error. seconds : time limit of a ray [s].
+    estimate of the mesh's error. limits : of a ray.
     """
 
     solids: Mapping[str, Solid]
     rays: Sequence[Ray]
-    seconds: float
+    limits: Limits
     results: dict[RayKey, RayResult] = field(default_factory=dict)
 
     @property
@@ -47,7 +48,7 @@ class RayWork:
     def submit(self, executor: Executor, key: RayKey) -> Future[RayResult]:
         """Have a ray followed."""
         mesh, number = key
-        task = RayTask(self.solids[mesh], self.rays[number], self.seconds)
+        task = RayTask(self.solids[mesh], self.rays[number], self.limits)
         return executor.submit(trace_ray, task)
 
     def stopped(self, key: RayKey) -> RayResult:

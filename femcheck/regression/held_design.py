@@ -61,9 +61,8 @@ def _sealed(name: str) -> Design:
 def _of_scene(name: str) -> Design:
     """The section of a scene's target, under the scene's loads."""
     scene = load_scene(bundled_scenes()[name])
-    data = load_design(str(scene.target.file)).model_dump(by_alias=True, exclude_none=True)
-    of_scene = {"rod": scene.rod.model_dump(), "loads": scene.loads.model_dump()}
-    return Design.model_validate(data | of_scene)
+    design = load_design(str(scene.target.file))
+    return design.model_copy(update={"rod": scene.rod, "loads": scene.loads})
 
 
 def _of_points(name: str, seed: int) -> Design:

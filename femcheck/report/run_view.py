@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -248,5 +249,5 @@ def _fixed(value: Any, digits: int) -> str:
 
 def _meanings(found: Combinations) -> tuple[tuple[str, str], ...]:
     """Every status that occurs, how often, and what it means."""
-    counts = {status: found.statuses.count(status) for status in dict.fromkeys(found.statuses)}
-    return tuple((f"{status} ({count})", meaning(status)) for status, count in counts.items())
+    counts = Counter(zip(found.texts, found.endings, strict=True))
+    return tuple((f"{text} ({count})", meaning(ended)) for (text, ended), count in counts.items())

@@ -12,7 +12,7 @@ from beamopt.arrays import FloatArray, IndexArray
 from beamopt.errors import InputError
 from beamopt.rod.arc import arc_centreline
 from beamopt.workspace import NODES
-from femcheck.mesh.files import TAGS
+from femcheck.mesh.files import DISPLACEMENT, TAGS, VTU_WEDGE
 from femcheck.prediction.rays import rays_of
 from femcheck.report.solid_run import Combinations, SolidRun
 from femcheck.report.surface import Surface, surface_of
@@ -119,8 +119,7 @@ class _Reader:
 
     def __init__(self, run: SolidRun, first: Path) -> None:
         self.subject = run.subject
-        at, moved, self.wedges = _deformed(first)
-        self.rest = at - moved
+        self.rest, _, self.wedges = _deformed(first)
         tagged = run.folder / "mesh.vtu"
         try:
             self.surface = surface_of(self.rest, self.wedges, _supplies(tagged, self.rest))
@@ -135,11 +134,11 @@ class _Reader:
 
     def shape(self, file: Path, pressures: FloatArray) -> Shape:
         """The surface in a file."""
-        at, moved, wedges = _deformed(file)
-        same = at.shape == self.rest.shape and np.array_equal(wedges, self.wedges)
-        if not same or not np.allclose(at - moved, self.rest, rtol=0, atol=1e-6):
+        rest, moved, wedges = _deformed(file)
+        same = rest.shape == self.rest.shape and np.array_equal(wedges, self.wedges)
+        if not same or not np.allclose(rest, self.rest, rtol=0, atol=1e-6):
             raise InputError(file, "", None, "is of another mesh than the files beside it")
-        return self._shape(at[self.surface.nodes], pressures)
+        return self._shape((rest + moved)[self.surface.nodes], pressures)
 
     def _shape(self, at: FloatArray, pressures: FloatArray) -> Shape:
         strains = self.subject.response.strains(pressures[None])
@@ -150,20 +149,21 @@ class _Reader:
 
 
 def _deformed(file: Path) -> tuple[FloatArray, FloatArray, IndexArray]:
-    """Positions (n, 3), displacements (n, 3) [mm], wedges (m, 6) of a deformed mesh."""
+    """Undeformed points (n, 3), displacements (n, 3) [mm], wedges (m, 6) of a deformed mesh."""
     mesh = _mesh(file)
     wedges = [np.asarray(block.data) for block in mesh.cells if block.type == "wedge"]
-    moved = mesh.point_data.get("displacement")
-    at = np.asarray(mesh.points, dtype=np.float64)
+    moved = mesh.point_data.get(DISPLACEMENT)
+    rest = np.asarray(mesh.points, dtype=np.float64)
     if not wedges or len(wedges[0]) == 0:
         raise InputError(file, "Cells", None, "must hold wedges")
-    if moved is None or np.shape(moved) != at.shape or at.shape[1:] != (3,):
-        raise InputError(file, "displacement", None, "must be given at every node")
-    if not (np.isfinite(at).all() and np.isfinite(moved).all()):
+    if moved is None or np.shape(moved) != rest.shape or rest.shape[1:] != (3,):
+        said = "must be given at every point; --resume writes the file again"
+        raise InputError(file, DISPLACEMENT, None, said)
+    if not (np.isfinite(rest).all() and np.isfinite(moved).all()):
         raise InputError(file, "Points", None, "must be finite numbers")
-    if wedges[0].min() < 0 or wedges[0].max() >= len(at):
+    if wedges[0].min() < 0 or wedges[0].max() >= len(rest):
         raise InputError(file, "connectivity", None, "names a node that is not there")
-    return at, np.asarray(moved, dtype=np.float64), wedges[0].astype(np.int64)
+    return rest, np.asarray(moved, dtype=np.float64), wedges[0][:, VTU_WEDGE].astype(np.int64)
 
 
 def _supplies(file: Path, rest: FloatArray) -> dict[tuple[int, int], int]:

@@ -29,6 +29,7 @@ LOOKS: dict[Ending, tuple[str, str, str]] = {
     Ending.INVERTED: ("I", "#101010", "#ffffff"),
     Ending.STEP_TOO_SMALL: ("t", "#e69f00", "#202020"),
     Ending.LINEAR_SOLVER: ("n", "#505050", "#ffffff"),
+    Ending.WORK_LIMIT: ("W", "#808080", "#ffffff"),
     Ending.TIME_OUT: ("T", "#808080", "#ffffff"),
     Ending.STOPPED: ("X", "#808080", "#ffffff"),
     Ending.NO_MESH: ("m", "#ffffff", "#606060"),

@@ -256,7 +256,7 @@ def test_a_cell_shows_the_commonest_verdict_and_the_worse_of_equals() -> None:
 
 
 def test_every_verdict_has_its_look() -> None:
-    assert list(LOOKS) == [verdict.value for verdict in Verdict]
+    assert list(LOOKS) == [verdict.name for verdict in Verdict]
     letters = [letter for letter, _, _ in LOOKS.values()]
     assert len(set(letters)) == len(letters)
 

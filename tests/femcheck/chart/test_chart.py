@@ -23,10 +23,12 @@ from femcheck.chart.measure import Measured, key_of, made_with, measure, read, w
 from femcheck.chart.reference import Limit, Reference
 from femcheck.chart.run import CHART, Budget, run_chart
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import FOUND, Ended, NoReply
+from femcheck.continuation.outcome import Status
 from femcheck.material.fibre import Thread
 from femcheck.models.named import named_design
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND, Model, Reply
+from femcheck.models.reply import Model, Reply
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
 from tests.femcheck.check.small import SIZES
@@ -82,8 +84,8 @@ def measured(name: str, error: float, seconds: float, rows: int = 3, lost: int =
     tips = np.zeros((rows, 3))
     tips[:, 0] = error
     tips[rows - lost :] = np.nan
-    reasons = (FOUND,) * (rows - lost) + ("buckled",) * lost
-    return Measured(name, "1", Reply(tips, reasons, 10), seconds, made_with(ABOUT))
+    endings = (FOUND,) * (rows - lost) + (Ended(Status.BUCKLED, 3.25),) * lost
+    return Measured(name, "1", Reply(tips, endings, 10), seconds, made_with(ABOUT))
 
 
 def held_against(uncertainty: float, *rows: Measured, lost: int = 0) -> Chart:
@@ -201,7 +203,7 @@ def test_what_a_chart_leaves(tmp_path: Path) -> None:
     assert text.splitlines()[0] == CHART
     rows = list(csv.DictReader(text.splitlines()))
     assert [row["family"] for row in rows] == ["wedge18"] * 6 + ["hex27"] * 3
-    assert {(row["found"], row["of"], row["status"]) for row in rows} == {("3", "3", FOUND)}
+    assert {(row["found"], row["of"], row["ended"]) for row in rows} == {("3", "3", FOUND.key)}
     layers = [3, 4, 6, 8, 12, 4, 2, 3, 4]
     errors = [5.0 * n**-4 for n in layers]
     np.testing.assert_allclose([float(row["error_mm"]) for row in rows], errors, rtol=1e-6)
@@ -332,6 +334,10 @@ def test_another_question_is_refused(tmp_path: Path) -> None:
         b'"size": "", "tips": [["a", 1, 2]], "reasons": ["converged"]}\n',
         b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
         b'"size": "", "tips": [[0, 1, 2]], "reasons": []}\n',
+        b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
+        b'"size": "", "tips": [[0, 1, 2]], "reasons": ["a text of nobody"]}\n',
+        b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
+        b'"size": "", "tips": [[0, 1, 2]], "endings": [["solid.NOBODY", null, ""]]}\n',
         b"\xff\xfe\n",
     ],
 )
@@ -367,7 +373,7 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
     assert [model.layers for model in first.asked] == [3, 4, 6]
     late = [row for row in chart.rows if not np.isfinite(row.measured.seconds)]
     assert len(late) == 3
-    assert all(row.measured.reply.reason.startswith("left out: expected") for row in late)
+    assert {row.measured.reply.ended.status for row in late} == {NoReply.TOO_DEAR}
     rows = list(csv.DictReader((tmp_path / "c" / "chart.csv").read_text().splitlines()))
     assert (rows[-1]["error_mm"], rows[-1]["cpu_seconds"], rows[-1]["found"]) == ("", "", "0")
     again = read_chart(tmp_path / "c")
@@ -463,12 +469,14 @@ def test_who_is_in_a_line_up() -> None:
 def test_replies_are_written_and_read() -> None:
     """With the tips that are not there."""
     tips = np.array([[0.1, -0.0, 1e-300], [np.nan] * 3])
-    one = Measured("a", "b", Reply(tips, (FOUND, "buckled"), 7, "many"), 1.5)
+    endings = FOUND, Ended(Status.BUCKLED, 10 / 3, "somewhere")
+    one = Measured("a", "b", Reply(tips, endings, 7, "many"), 1.5)
     line = json.loads(json.dumps(written(one)))
     again = read(line)
     np.testing.assert_array_equal(again.reply.tips, tips)
     assert (again.family, again.resolution, again.seconds) == ("a", "b", 1.5)
-    assert (again.reply.reasons, again.reply.unknowns) == ((FOUND, "buckled"), 7)
+    assert again.reply.endings == endings
+    assert again.reply.unknowns == 7
     assert line["model"] == "a b"
 
 

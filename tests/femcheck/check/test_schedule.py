@@ -14,6 +14,7 @@ from femcheck.check.meshes import layers_for
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.work import solve_all
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
@@ -80,7 +81,7 @@ def given(
 ) -> tuple[dict[Key, tuple[Any, Any]], dict[Key, CaseResult], int]:
     """What each case that is solved was given: its guess, and where it starts."""
     pool, seen = Later(seed), {}
-    schedule = Schedule(stages(), LEVELS, 1.0, dict(known))
+    schedule = Schedule(stages(), LEVELS, Limits(), dict(known))
     monkeypatch.setattr(work, "wait", pool.finish_one)
     make = schedule.case
 
@@ -129,7 +130,7 @@ def test_no_more_at_once_than_workers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_keys() -> None:
-    schedule = Schedule(stages(), LEVELS, 1.0)
+    schedule = Schedule(stages(), LEVELS, Limits())
     assert [node for name, node in schedule.keys if name == "hard"] == all_nodes()
     assert schedule.pressures((2, 0, 1)).tolist() == [50, 0, 20]
 

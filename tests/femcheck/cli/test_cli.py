@@ -189,7 +189,7 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     for option in (
         *("--out", "--seal", "--agree", "--law", "--nu", "--constant", "--wind", "--winding"),
         *("--slenderness", "--workers", "--layers", "--size", "--element", "--solver"),
-        *("--seconds", "--gmsh", "--gmsh-seconds", "--resume"),
+        *("--iterations", "--seconds", "--gmsh", "--gmsh-seconds", "--resume"),
     ):
         assert f"{option} " in said
     assert run(["--version"]) == 0

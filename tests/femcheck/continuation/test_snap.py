@@ -1,5 +1,6 @@
 """What a trace makes of paths that turn, jump and fail: scripted points, no solid."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.continuation.path import PathPoint
-from femcheck.continuation.stepper import Failed, Leg, Slope
+from femcheck.continuation.stepper import Exhausted, Failed, Leg, Slope
 from femcheck.continuation.trace import PathSteps, _Trace
 
 STATE: Any = None
@@ -17,10 +18,13 @@ def point(load: float, volume: float, growth: float = 1.0, unstable: int = 0) ->
     return PathPoint(STATE, load, volume, growth, unstable)
 
 
+Script = Sequence[PathPoint | Failed | Exhausted]
+
+
 class Scripted:
     """Gives one thing after the other, whatever is asked for; finds every stop that is asked at."""
 
-    def __init__(self, script: list[PathPoint | Failed], slope: float = 0.5) -> None:
+    def __init__(self, script: Script, slope: float = 0.5) -> None:
         self._script = iter(script)
         self._slope = Slope(np.array([1.0 - slope, slope]), np.zeros(1))
         self.scale = np.array([100.0, 100.0])
@@ -36,13 +40,16 @@ class Scripted:
 
     def step(self, leg: Leg, length: float) -> tuple[PathPoint | Failed, Slope | None, float]:
         self.lengths.append(length)
-        return next(self._script), self._slope, length
+        given = next(self._script)
+        if isinstance(given, Exhausted):
+            raise given
+        return given, self._slope, length
 
     def at(self, load: float, near: PathPoint) -> PathPoint | None:
         return point(load, near.volume)
 
 
-def trace(script: list[PathPoint | Failed], stops: list[float], slope: float = 0.5) -> Any:
+def trace(script: Script, stops: list[float], slope: float = 0.5) -> Any:
     stepper: Any = Scripted(script, slope)
     done = _Trace(PathSteps(), stepper, stops, None)
     return done, done.follow()
@@ -93,11 +100,24 @@ def failed(status: Status, unstable: int | None) -> Failed:
     return Failed(status, unstable, STATE, 40.0)
 
 
-def test_a_time_out_is_no_buckling() -> None:
-    script = [point(40.0, 120.0), failed(Status.TIME_OUT, 2)]
+@pytest.mark.parametrize("limit", [Status.TIME_OUT, Status.WORK_LIMIT])
+def test_a_limit_that_is_reached_is_no_buckling(limit: Status) -> None:
+    script = [point(40.0, 120.0), Exhausted(limit)]
     _, (status, critical) = trace(script, [50.0], slope=0.01)
-    assert status is Status.TIME_OUT
+    assert status is limit
     assert critical == 40.0
+
+
+def test_a_clock_that_runs_out_behind_a_limit_point_leaves_a_snap_open() -> None:
+    """Work is the same each time, so that what it ends stays; a clock is not."""
+    fallen = [point(49.0, 130.0, 5.0), point(47.0, 140.0, -5.0, 1)]
+    for limit, wanted in (
+        (Status.TIME_OUT, Status.TIME_OUT),
+        (Status.WORK_LIMIT, Status.LIMIT_POINT),
+    ):
+        _, (status, critical) = trace([*fallen, Exhausted(limit)], [50.0, 100.0])
+        assert status is wanted
+        assert 49.0 <= critical < 50.0
 
 
 @pytest.mark.parametrize(("unstable", "slope"), [(2, 0.01), (1, 0.06)])

@@ -1,14 +1,23 @@
-"""Mesh files, read back by meshio."""
+"""Mesh files, read back by VTK, gmsh and meshio."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
+import pyvista
 
+from beamopt.bundled import bundled_scenes
+from beamopt.design import load_design
 from femcheck.mesh.extrusion import Extrusion, extrude, stations
 from femcheck.mesh.files import TAGS, write_deformed, write_mesh
+from femcheck.mesh.geo import SectionSizes
+from femcheck.mesh.gmsh_section import Mesher
+from femcheck.mesh.section_mesh import SectionMesh
+from femcheck.regression.kept_mesh import read_kept
 from tests.femcheck.lattice import LENGTH, lattice_section
+from tests.readers.meshes import VolumeMesh, read_msh, read_section_msh, read_vtu
 
 LAYERS = 3
 
@@ -29,8 +38,62 @@ def test_both_files_and_nothing_else(folder: Path) -> None:
     assert sorted(item.name for item in folder.iterdir()) == ["mesh.msh", "mesh.vtu"]
 
 
-@pytest.mark.parametrize(("name", "tag"), [("mesh.msh", "gmsh:physical"), ("mesh.vtu", "tag")])
-def test_cells_and_their_tags(folder: Path, body: Extrusion, name: str, tag: str) -> None:
+def sealed_extrusion() -> Extrusion:
+    """The bundled sealed section as gmsh meshes it, with graded layers."""
+    design = load_design(bundled_scenes()["sealed-section"].with_name("sealed_section.json"))
+    section = Mesher().mesh(design.outline, SectionSizes(factor=3.0))
+    assert isinstance(section, SectionMesh)
+    return extrude(section, stations(100.0, 3, 2.0))
+
+
+BODIES = {
+    "lattice": lambda: extrude(lattice_section(), stations(LENGTH, LAYERS, 1.5)),
+    "sealed": sealed_extrusion,
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(("file", "read"), [("mesh.vtu", read_vtu), ("mesh.msh", read_msh)])
+def test_other_programs_find_the_solid(
+    name: str, file: str, read: Callable[[Path], VolumeMesh], tmp_path: Path
+) -> None:
+    """Positive volumes, the area of every tagged surface, moments of material and chambers."""
+    body = BODIES[name]()
+    write_mesh(tmp_path, body)
+    found, section = read(tmp_path / file), body.section
+    assert found.volumes.min() > 0
+    assert found.volumes.sum() == pytest.approx(section.moments.area * body.length, rel=1e-12)
+    a, b = section.points[section.edges.T]
+    lengths = np.hypot(*(b - a).T)
+    for supply, group in enumerate(("surface", "supply-1", "supply-2", "supply-3")):
+        walls = lengths[section.supply == supply].sum() * body.length
+        assert found.areas[group] == pytest.approx(walls, rel=1e-12)
+    assert found.areas["fixed"] == pytest.approx(section.moments.area, rel=1e-12)
+    assert found.areas["tip"] == pytest.approx(section.moments.area, rel=1e-12)
+    size = np.abs(section.moments.raw).max(axis=0)
+    np.testing.assert_allclose(found.integrals / size, section.moments.raw / size, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_warping_the_deformed_mesh_once_is_the_deformed_shape(name: str, tmp_path: Path) -> None:
+    """As VTK reads it: undeformed points of positive volume, and the way from there."""
+    body = BODIES[name]()
+    at = body.points @ np.array([[0.9, 0.1, 0.0], [0.0, 1.1, 0.2], [0.1, 0.0, 1.25]]) + 2.0
+    write_deformed(tmp_path / "state.vtu", body, at)
+    grid = pyvista.read(tmp_path / "state.vtu")
+    np.testing.assert_allclose(grid.points, body.points, atol=1e-12)
+    assert set(grid.point_data) == {"displacement_mm"}
+    warped = grid.warp_by_vector("displacement_mm")
+    np.testing.assert_allclose(warped.points, at, atol=1e-12)
+    rest, now = (np.asarray(one.compute_cell_sizes()["Volume"]) for one in (grid, warped))
+    assert min(rest.min(), now.min()) > 0
+    assert rest.sum() == pytest.approx(body.section.moments.area * body.length, rel=1e-12)
+    det = 0.9 * 1.1 * 1.25 + 0.1 * 0.2 * 0.1
+    np.testing.assert_allclose(now / rest, det, rtol=1e-9)
+
+
+def test_cells_and_their_tags(folder: Path, body: Extrusion) -> None:
+    name, tag = "mesh.msh", "gmsh:physical"
     read = meshio.read(folder / name)
     np.testing.assert_allclose(read.points, body.points, atol=1e-12)
     np.testing.assert_array_equal(read.get_cells_type("wedge"), body.wedges)
@@ -72,8 +135,14 @@ def test_walls_enclose_the_chambers(folder: Path, body: Extrusion) -> None:
 def test_deformed(tmp_path: Path, body: Extrusion) -> None:
     at = body.points * [1.0, 1.0, 1.25] + [0.0, 2.0, 0.0]
     write_deformed(tmp_path / "state.vtu", body, at)
-    read = meshio.read(tmp_path / "state.vtu")
-    np.testing.assert_allclose(read.points, at)
-    np.testing.assert_allclose(read.point_data["displacement"], at - body.points)
-    np.testing.assert_allclose(read.cell_data["stretch"][0], 1.25)
+    grid = pyvista.read(tmp_path / "state.vtu")
+    np.testing.assert_allclose(grid.cell_data["stretch"], 1.25)
     assert [item.name for item in tmp_path.iterdir()] == ["state.vtu"]
+
+
+@pytest.mark.parametrize("file", sorted(Path("meshes").glob("*.msh")), ids=lambda file: file.stem)
+def test_gmsh_reads_the_stored_section_meshes(file: Path) -> None:
+    """Triangles counter-clockwise; every supply's edges enclose its chambers."""
+    section, found = read_kept(file), read_section_msh(file)
+    size = np.abs(section.moments.raw).max(axis=0)
+    np.testing.assert_allclose(found / size, section.moments.raw / size, atol=1e-12)

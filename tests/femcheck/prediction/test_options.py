@@ -4,6 +4,8 @@ import json
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from beamopt.actuator import Actuator
 from beamopt.errors import InputError
@@ -73,6 +75,12 @@ def test_a_shear_modulus_that_contradicts_is_refused(
     assert said.startswith(f"actuator.shear_modulus = {modulus:g}")
     assert f"contradicts E = 300 kPa and ν = {nu:g}" in said
     assert f"{300 / (2 * (1 + nu)):.4g} kPa" in said
+
+
+@given(E=st.floats(5, 50_000), nu=st.floats(0, 0.5))
+def test_a_shear_modulus_that_was_not_given_contradicts_nothing(E: float, nu: float) -> None:
+    law = options_of(poisson_ratio=nu).law_for(Actuator(youngs_modulus=E))
+    assert law.shear_modulus == pytest.approx(E / (2 * (1 + nu)), rel=1e-12)
 
 
 def test_the_law_is_the_design_s_material() -> None:

@@ -1,6 +1,7 @@
 """Folders of results read back; what is damaged is said in one line, by file and key."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,8 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
+from beamopt.files import csv_text
+from femcheck.report.content import read_table
 from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
@@ -38,7 +41,16 @@ def test_a_prediction_is_read(predicted: Path) -> None:
     assert 0 < missing.sum() < 27
     assert all(np.isfinite(found.ends_at[missing]))
     row = int(np.flatnonzero(missing)[0])
-    assert found.ending(row) == f"{found.statuses[row]} at P = {found.ends_at[row]:.4g} kPa"
+    ended = found.endings[row]
+    assert ended is not None
+    assert ended.status.is_physical
+    assert found.ending(row) == str(replace(ended, load=found.ends_at[row]))
+
+
+def test_text_that_was_defused_is_shown_as_it_was(tmp_path: Path) -> None:
+    texts = ("=1+1", "'-x", "-1.5", "@a")
+    (tmp_path / "a.csv").write_text(csv_text("a,b,c,d", [texts]), encoding="utf-8")
+    assert read_table(tmp_path / "a.csv").rows == (texts,)
 
 
 def test_folders_are_found(checked: Path, predicted: Path, tmp_path: Path) -> None:
@@ -108,13 +120,17 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "design cut": (cut("design.json"), r"design\.json"),
     "provenance": (replaced("provenance.json", '"machine"', '"engine"'), r"machine: must be given"),
     "table gone": (removed("table.csv"), r"table\.csv: no such file"),
-    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 19 cells|rows = )"),
-    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 18: must hold 19 cells"),
+    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 20 cells|rows = )"),
+    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 19: must hold 20 cells"),
     "row gone": (
         lambda folder: (folder / "table.csv").write_text(
             "".join((folder / "table.csv").read_text().splitlines(True)[:-1])
         ),
         r"table\.csv: rows = 26: must hold 27 combinations",
+    ),
+    "status": (
+        replaced("table.csv", ",solid.CONVERGED", ",solid.SOLVED"),
+        r"combination 1, ended = .*: no status is called solid\.SOLVED",
     ),
     "no column": (replaced("table.csv", "beam_y", "beam_q"), r"table\.csv: beam_y: no column"),
     "no number": (replaced("table.csv", "0,0,20,", "0,0,20,x"), r"line 3, beam_x = 'x"),
@@ -128,8 +144,8 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "mesh gone": (removed("deformed/20-0-0.vtu"), r"20-0-0\.vtu: is missing"),
     "tags gone": (removed("mesh.vtu"), r"mesh\.vtu: is missing"),
     "no displacement": (
-        replaced("deformed/20-0-0.vtu", 'Name="displacement"', 'Name="displaced"'),
-        r"20-0-0\.vtu: displacement: must be given",
+        replaced("deformed/20-0-0.vtu", 'Name="displacement_mm"', 'Name="displacement"'),
+        r"20-0-0\.vtu: displacement_mm: must be given",
     ),
     "no tags": (replaced("mesh.vtu", 'Name="tag"', 'Name="gat"'), r"mesh\.vtu: tag: must be given"),
 }
