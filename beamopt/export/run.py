@@ -131,7 +131,7 @@ def export_design(
     )
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
-    return Exported(folder, sizes, (*left_out, *notes_on(design, outline.faults)))
+    return Exported(folder, sizes, (*left_out, *notes_on(design, drawing, sagitta, outline.faults)))
 
 
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
