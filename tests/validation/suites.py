@@ -8,6 +8,7 @@ from tests.validation import (
     accuracy,
     arc,
     genotypes,
+    geometry,
     material,
     published_solids,
     refinement,
@@ -24,6 +25,7 @@ __all__ = ["SUITES"]
 SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "arc": arc.checks,
     "genotypes": genotypes.checks,
+    "geometry": geometry.checks,
     "symmetry": symmetry.checks,
     "resume": resume.checks,
     "solid": solid.checks,
