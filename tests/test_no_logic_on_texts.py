@@ -22,7 +22,7 @@ LOOKED_AT |= {"removeprefix", "removesuffix", "replace", "match", "search", "ful
 TEXTS = {"reason", "reasons", "status", "statuses", "ending", "endings", "ended", "resolution"}
 TEXTS |= {"text", "texts", "law_text", "title", "verdict", "advice"}
 
-ENUMS = {"BoundStatus", "Ending", "FaultKind", "MeshProblem", "NoReply", "PathStatus"}
+ENUMS = {"Agreement", "BoundStatus", "Ending", "FaultKind", "MeshProblem", "NoReply", "PathStatus"}
 ENUMS |= {"ReachStatus", "RefineStatus", "RodStatus", "Severity", "Stage", "Status", "StopReason"}
 ENUMS |= {"Verdict", "Witness"}
 """Whose values are texts: `Witness("both")` looks a text up; `Witness["BOTH"]` is a name."""

@@ -151,8 +151,12 @@ def _size(design: Design, grid: PolarGrid, cap: float) -> str:
 
 def _areas(faces: SectionFaces) -> str:
     material = sum(face.area for face in faces.pieces)
-    supplies = [f"{supply}: {faces.chamber_area(supply):.1f}" for supply in SUPPLIES]
-    return f"material {material:.1f} mm², chambers {', '.join(supplies)} mm²"
+    supplies = [f"{supply}: {_area(faces.chamber_area(supply))}" for supply in SUPPLIES]
+    return f"material {_area(material)} mm², chambers {', '.join(supplies)} mm²"
+
+
+def _area(area: float) -> str:
+    return f"{area:.1f}" if area >= 10 or area == 0 else f"{area:.3g}"
 
 
 def _thickness(faces: SectionFaces, skin: float | None, wall: float | None) -> str:

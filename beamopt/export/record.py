@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from beamopt.design import Design
 from beamopt.export.bodies import Solid
 from beamopt.export.drawing import Drawing
 from beamopt.export.faces import SectionFaces
-from beamopt.outline.faults import Fault, FaultKind
+from beamopt.outline.faults import Fault, summaries
 from beamopt.section.feature_points import SUPPLIES
 
 __all__ = ["SCHEMA", "export_record", "notes_on"]
@@ -61,25 +61,9 @@ def notes_on(design: Design, faults: Iterable[Fault]) -> tuple[str, ...]:
         notes.append(f"one of {count} segments' sections, extruded over the whole length")
     if any(design.rod.rest_curvature):
         notes.append("its mould is curved (rod.rest_curvature); the files hold it straight")
-    return (*notes, *_faults(design, faults))
-
-
-def _faults(design: Design, faults: Iterable[Fault]) -> Iterator[str]:
-    """One line: every kind, the worst first, with how often it is found and its first place."""
-    kinds: dict[FaultKind, list[Fault]] = {}
-    for fault in faults:
-        kinds.setdefault(fault.status, []).append(fault)
-    named = "; ".join(
-        f"{kind.value} ({len(found)} places, first: {found[0]})"
-        if len(found) > 1
-        else str(found[0])
-        for kind, found in kinds.items()
-    )
     if not design.seal.rules.sealed:
-        said = "not sealed, chambers may be open to a surface or have no wall"
-        yield f"{said}: {named or 'none is open, walls are not measured'}"
-    elif named:
-        yield named
+        notes.append("not sealed: chambers may be open or have no wall, walls are not measured")
+    return (*notes, *summaries(faults))
 
 
 def _areas(faces: SectionFaces) -> dict[str, object]:

@@ -31,3 +31,8 @@ class RodStatus(Enum):
     def is_physical(self) -> bool:
         """Whether the rod has no stable equilibrium; other endings say nothing of it."""
         return self in (RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the rod ends there: no finer resolution and no more work changes it."""
+        return self.is_physical

@@ -237,7 +237,7 @@ class _Asking:
     ) -> Within:
         """Reached where every tip that any model has is there, and near enough."""
         some = np.any([one.reply.found for one in self.tried], axis=0)
-        lost = [not one.is_found and not one.status.is_physical for one in reply.endings]
+        lost = [not one.is_found and not one.status.is_settled for one in reply.endings]
         unsure = (some & ~(estimate <= self.accuracy)) | np.array(lost)
         if not some.any() and not any(lost):
             return self._nothing(Ending.NO_TIP, f"{reason}; {reply.ended}")

@@ -13,6 +13,7 @@ from femcheck.check.case import forget_workshops
 from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import ended_of
+from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply, cpu_seconds
 
@@ -127,5 +128,9 @@ def _endings(line: dict[str, Any]) -> tuple[Ended, ...]:
 
 
 def is_final(measured: Measured) -> bool:
-    """Whether nothing was cut short that would be tried again."""
-    return not any(one.status.is_interrupted for one in measured.reply.endings)
+    """Whether nothing was cut short: by a clock, a process that died, or too little work allowed.
+
+    A reply does not say how much work that was, so that it is asked for again in any case.
+    """
+    statuses = {one.status for one in measured.reply.endings}
+    return Status.WORK_LIMIT not in statuses and not any(one.is_interrupted for one in statuses)

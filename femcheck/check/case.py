@@ -179,7 +179,8 @@ def solve_case(case: Case) -> CaseResult:
     outcome = steps.walk(
         shop.problem, shop.shapes, start, case.pressures, shop.solver, guess, budget
     )
-    if outcome.status in LOST and case.pressures.any():
+    left = _is_beyond_law(shop.problem, outcome)
+    if (outcome.status in LOST or left) and case.pressures.any():
         outcome = _followed(shop, case, outcome, budget)
     if outcome.state is None:
         return CaseResult(outcome)
@@ -191,8 +192,16 @@ def solve_case(case: Case) -> CaseResult:
     )
 
 
+def _is_beyond_law(problem: Equilibrium, found: Outcome) -> bool:
+    """Whether an equilibrium was found that is stretched beyond what the law describes."""
+    most = problem.law.most_stretch
+    if found.state is None or math.isinf(most):
+        return False
+    return problem.largest_stretch(found.state)[0] > most
+
+
 def _followed(shop: Workshop, case: Case, failed: Outcome, budget: Budget) -> Outcome:
-    """Where load steps found nothing: the path from rest, which tells a branch from a failure."""
+    """Where load steps found nothing, or what no law describes: the path from rest, which tells."""
     spent = failed.statistics
     load = float(np.abs(case.pressures).max())
     direction = case.pressures / load

@@ -91,8 +91,12 @@ class Comparison:
 
         Where the tip hardly moves, over a hundredth of the largest displacement.
         """
+        return np.asarray(self.difference / self._moved)
+
+    @property
+    def _moved(self) -> FloatArray:
         least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
-        return np.asarray(self.difference / np.maximum(self.displacement, least))
+        return np.asarray(np.maximum(self.displacement, least))
 
     @property
     def moves(self) -> bool:
@@ -129,6 +133,19 @@ class Comparison:
         stiffest = max(one.penalty for one in self.solids if np.isfinite(one.penalty))
         change = self.final.tips - self.solid("standard", stiffest).tips
         return np.asarray(np.linalg.norm(change, axis=1))
+
+    @property
+    def left(self) -> float:
+        """Largest share that mesh and penalty may still move a tip by, over displacement.
+
+        The estimated error of the standard mesh, or where its order is not known all that changes
+        from the coarse mesh to it, and what extrapolating in 1/c did. NaN without an answer.
+        """
+        change = np.linalg.norm(self.final.tips - self.solid("coarse", np.inf).tips, axis=1)
+        mesh = change if self.order is None else self.discretisation
+        shares = (mesh + self.penalty_error) / self._moved
+        known = shares[self.is_loaded & ~np.isnan(shares)]
+        return float(known.max()) if known.size else float("nan")
 
     @property
     def unanswered(self) -> int:

@@ -130,8 +130,12 @@ def verdict(checked: Checked) -> str:
     worst, median = (f"{100 * value:.3g} %" for value in (compared.worst, compared.median))
     if not compared.moves:
         return "nothing to compare: no tip moves at any pressure"
-    said = f"worst {worst}, median {median} of displacement (asked {agree})"
-    return f"agrees: {said}" if checked.holds else f"differs: {said}"
+    known = not math.isnan(compared.left)
+    left = f"; mesh and penalty leave up to {100 * compared.left:.3g} %" if known else ""
+    said = f"worst {worst}, median {median} of displacement (asked {agree}{left})"
+    why = "what they leave could turn it over" if known else "it stands on one mesh"
+    sure = "" if checked.certain else f"; uncertain, as {why}"
+    return f"{'agrees' if checked.holds else 'differs'}: {said}{sure}"
 
 
 def _loaded(compared: Comparison) -> int:
@@ -148,6 +152,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "kind": "implementation",
             "law": options.law,
             "holds": checked.holds,
+            "certain": checked.certain,
             "text": verdict(checked),
             "agree": options.agree,
         },
@@ -155,7 +160,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
             "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
             "islands": len(outline.islands),
-            "faults": [str(fault) for fault in outline.faults],
+            "faults": [str(fault) for fault in checked.subject.design.findings],
         },
     }
     if subject.sealing_moved is not None:
@@ -199,6 +204,7 @@ def _differences(compared: Comparison) -> dict[str, Any]:
         "worst_discretisation_mm": most(compared.discretisation),
         "worst_assumptions_mm": most(compared.assumptions),
         "worst_penalty_mm": most(compared.penalty_error),
+        "worst_left_of_displacement": _number(compared.left),
     }
 
 

@@ -104,12 +104,7 @@ def run_designs(
         typer.Option(min=1, help="Work limit of one case or ray: Newton's iterations."),
     ] = 2000,
     seconds: Annotated[
-        float,
-        typer.Option(
-            metavar="S",
-            help="Clock limit of one case or ray, as a last resort: what it ends depends on the "
-            "machine, and --resume tries it again. None if left out.",
-        ),
+        float, typer.Option(metavar="S", help="Clock limit of one case besides; none if left out.")
     ] = math.inf,
     gmsh: Annotated[
         str | None, typer.Option(help="The gmsh executable; found by itself if left out.")
@@ -128,11 +123,7 @@ def run_designs(
         str, typer.Option(help="With --accuracy: beam or solid, instead of the cheaper one.")
     ] = "auto",
     budget: Annotated[
-        float,
-        typer.Option(
-            metavar="S",
-            help="With --accuracy: processor time that a model may be expected to take.",
-        ),
+        float, typer.Option(metavar="S", help="With --accuracy: processor time of one model.")
     ] = math.inf,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
         False
@@ -193,11 +184,7 @@ def chart_models(
         typer.Option(help="raster, beam, wedge18, …; may be given again. All if left out."),
     ] = None,
     seconds: Annotated[
-        float,
-        typer.Option(
-            metavar="S",
-            help="Leave out models expected to take more processor time. None if left out.",
-        ),
+        float, typer.Option(metavar="S", help="Leave out models expected to need more of the CPU.")
     ] = math.inf,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Models asked at once.")] = 2,
     resume: Annotated[

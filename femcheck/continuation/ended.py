@@ -27,13 +27,13 @@ class NoReply(Enum):
         return self in (NoReply.TOO_DEAR, NoReply.UNKNOWN_COST)
 
     @property
-    def is_physical(self) -> bool:
+    def is_settled(self) -> bool:
         """False: it says nothing of the actuator."""
         return False
 
 
 ReplyStatus = Status | RodStatus | MeshProblem | NoReply
-"""Each has `is_interrupted` and `is_physical`."""
+"""Each has `is_interrupted` and `is_settled`."""
 
 GROUPS: dict[str, type[ReplyStatus]] = {
     "solid": Status,

@@ -16,6 +16,7 @@ class Status(Enum):
     CONVERGED = "converged"
     LIMIT_POINT = "limit point"
     BUCKLED = "buckled"
+    BEYOND_LAW = "stretched beyond what the law describes"
     INVERTED = "an element turned inside out"
     STEP_TOO_SMALL = "load steps became too small"
     LINEAR_SOLVER = "the linear solver found no solution"
@@ -40,6 +41,11 @@ class Status(Enum):
     def is_limit(self) -> bool:
         """Whether a limit on work or on time ended it, and nothing that it computed."""
         return self in (Status.WORK_LIMIT, Status.TIME_OUT)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
+        return self.is_physical or self is Status.BEYOND_LAW
 
 
 @dataclass

@@ -171,6 +171,11 @@ class Stepper:
             raise Exhausted(outcome.status)
         return outcome
 
+    def share_of_law(self, point: PathPoint) -> float:
+        """Largest stretch at a point over the largest of the law; 0 where that has no end."""
+        most = self._problem.law.most_stretch
+        return self._problem.largest_stretch(point.state)[0] / most if np.isfinite(most) else 0.0
+
     def _to_stop(self, here: PathPoint, slope: Slope) -> tuple[float, float]:
         """Length to the next load asked for, and that load; infinite where there is none."""
         ahead = [stop for stop in self._stops if stop > here.load * (1 + 1e-9)]

@@ -144,6 +144,10 @@ class _Trace:
                 if length < self._steps.smallest or tries < 0:
                     return self._ended or (tried.status, leg.here.load)
                 continue
+            if self._stepper.share_of_law(tried) > 1:
+                passed = self._ended or self._passing(leg, tried, length)
+                if passed is not None:
+                    return passed
             if self._ended is None and is_past(tried):
                 self._ended = self._ending(leg, tried, length)
                 self._ended_at = leg.here.volume
@@ -219,6 +223,31 @@ class _Trace:
         self.lost = failed.state, failed.load
         self.volume = leg.here.volume
         return True
+
+    def _passing(self, leg: Leg, there: PathPoint, length: float) -> End | None:
+        """At which load a step leaves what the law describes; None where stability ends before."""
+        inside, outside, low, high = leg.here, there, 0.0, length
+        steps, share = self._steps, self._stepper.share_of_law
+        if share(inside) > 1:  # behind a snap, say
+            return Status.BEYOND_LAW, inside.load
+        while high - low >= steps.smallest and (
+            abs(outside.load - inside.load) > steps.narrow * outside.load
+        ):
+            middle = (low + high) / 2
+            tried, _, _ = self._stepper.step(leg, middle)
+            if isinstance(tried, Failed):
+                break
+            if share(tried) > 1:
+                outside, high = tried, middle
+            elif is_past(tried):
+                return None
+            else:
+                inside, low = tried, middle
+        if inside is not leg.here:
+            self._take(inside, None)
+        part = (1 - share(inside)) / (share(outside) - share(inside))
+        self.volume = float(inside.volume + part * (outside.volume - inside.volume))
+        return Status.BEYOND_LAW, float(inside.load + part * (outside.load - inside.load))
 
     def _ending(self, leg: Leg, there: PathPoint, length: float) -> End:
         """What ended the stable part between two points, and at which load."""

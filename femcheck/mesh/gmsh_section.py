@@ -41,7 +41,7 @@ class MeshProblem(Enum):
         return False
 
     @property
-    def is_physical(self) -> bool:
+    def is_settled(self) -> bool:
         """False: no mesh says nothing of the actuator."""
         return False
 

@@ -105,6 +105,11 @@ class SolidRun:
         """Whether a material was asked about, not the implementation."""
         return self.summary.text("verdict.kind") == "prediction"
 
+    @property
+    def is_certain(self) -> bool:
+        """Whether two meshes bear its verdict out; folders that do not say count as such."""
+        return not self.summary.has("verdict.certain") or self.summary.flag("verdict.certain")
+
     @cached_property
     def seconds(self) -> float:
         """Processor time of all cases [s]."""

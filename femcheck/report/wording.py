@@ -28,6 +28,8 @@ MEANINGS: Mapping[ReplyStatus, str] = {
     "wall of it snaps; beyond it there is no equilibrium near this one",
     Status.BUCKLED: "it leaves its path while the volume still grows; where few nodes move, "
     "a surface creases",
+    Status.BEYOND_LAW: "the largest stretch passes what the law describes: beyond it the response "
+    "falls that was fitted to a test; another law may have an answer",
     Status.INVERTED: "the mesh gave way, not the actuator: the computation ends here",
     Status.STEP_TOO_SMALL: "the computation could not follow its path any further",
     Status.LINEAR_SOLVER: "the tangent was singular, or too badly conditioned to solve",
@@ -51,11 +53,13 @@ def badge_of(run: SolidRun) -> Badge:
     if found is None:
         return Badge("no answer", "none")
     missing = int((found.loaded & ~found.answered).sum())
+    unsure = "" if run.is_certain else ", uncertain"
     if run.summary.flag("verdict.holds"):
-        return Badge("beam holds" if run.is_prediction else "agrees", "good")
+        said = "beam holds" if run.is_prediction else "agrees"
+        return Badge(said + unsure, "good" if run.is_certain else "none")
     if missing:
-        return Badge(f"{missing} of {int(found.loaded.sum())} without answer", "bad")
-    return Badge("beam is off" if run.is_prediction else "differs", "bad")
+        return Badge(f"{missing} of {int(found.loaded.sum())} without answer{unsure}", "bad")
+    return Badge(("beam is off" if run.is_prediction else "differs") + unsure, "bad")
 
 
 def meaning(ended: Ended | None) -> str:

@@ -17,6 +17,7 @@ class Ending(Enum):
     UNSTABLE = "equilibrium that is unstable"
     LIMIT_POINT = Status.LIMIT_POINT.value
     BUCKLED = Status.BUCKLED.value
+    BEYOND_LAW = Status.BEYOND_LAW.value
     INVERTED = Status.INVERTED.value
     STEP_TOO_SMALL = Status.STEP_TOO_SMALL.value
     LINEAR_SOLVER = Status.LINEAR_SOLVER.value

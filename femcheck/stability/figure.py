@@ -26,6 +26,7 @@ LOOKS: dict[Ending, tuple[str, str, str]] = {
     Ending.UNSTABLE: ("u", "#f0e442", "#202020"),
     Ending.LIMIT_POINT: ("L", "#d55e00", "#ffffff"),
     Ending.BUCKLED: ("B", "#7a1f5c", "#ffffff"),
+    Ending.BEYOND_LAW: ("l", "#c8a2c8", "#202020"),
     Ending.INVERTED: ("I", "#101010", "#ffffff"),
     Ending.STEP_TOO_SMALL: ("t", "#e69f00", "#202020"),
     Ending.LINEAR_SOLVER: ("n", "#505050", "#ffffff"),

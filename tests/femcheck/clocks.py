@@ -31,7 +31,7 @@ def run_away(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @contextmanager
-def busy(count: int = 4) -> Iterator[None]:
+def busy(count: int = 3) -> Iterator[None]:
     """So many processes beside this one that do nothing but count, for two minutes at most."""
     burning = [subprocess.Popen([sys.executable, "-c", BURN]) for _ in range(count)]
     try:

@@ -206,6 +206,16 @@ def test_what_is_too_dear_is_said() -> None:
     assert found.reply is not None
 
 
+def test_nothing_is_too_dear_unless_a_budget_is_given() -> None:
+    slow = MadeUp(powers(10.0, 2), seconds=lambda model: 1e7 * model.layers**3)
+    found, _ = answered(slow.off, 0.05, made=slow)
+    quick = MadeUp(powers(10.0, 2))
+    same, _ = answered(quick.off, 0.05, made=quick)
+    assert slow.asked == quick.asked
+    assert (found.ending, found.worst) == (same.ending, same.worst)
+    assert found.ending is not Ending.TOO_DEAR
+
+
 def test_too_dear_before_there_is_an_estimate() -> None:
     """A level that only serves to compare is no excuse for what the next one takes."""
     made = MadeUp(powers(10.0, 2), seconds=lambda model: 1000.0)

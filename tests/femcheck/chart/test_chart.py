@@ -19,7 +19,7 @@ from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
-from femcheck.chart.measure import Measured, key_of, made_with, measure, read, written
+from femcheck.chart.measure import Measured, is_final, key_of, made_with, measure, read, written
 from femcheck.chart.reference import Limit, Reference
 from femcheck.chart.run import CHART, Budget, run_chart
 from femcheck.check.options import CheckOptions
@@ -390,6 +390,19 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
 
 
 @pytest.mark.usefixtures("undrawn")
+def test_no_model_is_left_out_for_its_time_unless_that_is_asked_for(tmp_path: Path) -> None:
+    """However long models take, as on a machine that is busy, the chart has all of them."""
+    slow = made(seconds=lambda model: 1e7 * model.layers**3)
+    chart = charted(question_of(NEO), tmp_path / "slow", slow, families=["wedge18"])
+    quick = made()
+    same = charted(question_of(NEO), tmp_path / "quick", quick, families=["wedge18"])
+    assert slow.asked == quick.asked
+    np.testing.assert_array_equal(
+        [row.error for row in chart.rows], [row.error for row in same.rows]
+    )
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_a_correction_is_asked_though_the_finest_is_too_dear(tmp_path: Path) -> None:
     """Stiffer penalties at four layers take what four layers take."""
     solids = made(seconds=lambda model: 10.0 * model.layers)
@@ -478,6 +491,14 @@ def test_replies_are_written_and_read() -> None:
     assert again.reply.endings == endings
     assert again.reply.unknowns == 7
     assert line["model"] == "a b"
+
+
+@pytest.mark.parametrize("status", Status)
+def test_what_was_cut_short_is_asked_again(status: Status) -> None:
+    """By a clock or a dead process, or at a work limit, which may be a larger one now."""
+    reply = Reply(AT, (FOUND, Ended(status, 3.0), FOUND))
+    cut = {Status.TIME_OUT, Status.STOPPED, Status.WORK_LIMIT}
+    assert is_final(Measured("a", "b", reply, 1.0)) is (status not in cut)
 
 
 def test_a_quick_reply_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -153,7 +153,7 @@ def test_no_time(tmp_path: Path) -> None:
     assert verdict(result) == "no answer in 26 of 26 cases: time limit reached"
     assert not result.holds
     for line in (folder / "compare.csv").read_text().splitlines()[1:]:
-        assert line.endswith(",,,,,,,,,,time limit reached")
+        assert line.endswith(",,,,,,,,,,time limit reached,solid.TIME_OUT")
     assert not list((folder / "deformed").iterdir())
 
 
