@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from beamopt.design import Design
 from beamopt.errors import InputError
-from beamopt.outline.faults import Fault
 from beamopt.refine.refine import Refined, RefineStatus, StageRecord, refine
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
@@ -28,11 +27,6 @@ class Refinement:
     design: Design
     refined: Refined
     seconds: float
-
-    @property
-    def faults(self) -> tuple[Fault, ...]:
-        """What is wrong with the outline of a sealed design."""
-        return tuple(self.design.outline.faults) if self.design.seal.rules.sealed else ()
 
 
 def refine_design(

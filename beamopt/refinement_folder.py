@@ -122,7 +122,7 @@ def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
         "status": refined.status.value,
         "before": _losses(refined.before, refined.ratio_before, rules),
         "after": _losses(refined.after, refined.ratio, rules),
-        "faults": [str(fault) for fault in found.faults],
+        "faults": [str(fault) for fault in found.design.findings],
         "evaluations": refined.evaluations,
         "flips": refined.flips,
     }

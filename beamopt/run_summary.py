@@ -70,7 +70,7 @@ def _outline(result: Optimisation) -> dict[str, Any]:
     sealed = result.best.seal.rules.sealed and result.verdict.status is Status.JUDGED
     if not sealed:
         return {}
-    faults = [str(fault) for fault in result.best.outline.faults]
+    faults = [str(fault) for fault in result.best.findings]
     if not math.isfinite(result.outline_loss):
         return {"outline": {"status": Status.NO_EQUILIBRIUM.value, "faults": faults}}
     rms = result.target.aim.rms_distance(result.outline_loss)

@@ -55,7 +55,7 @@ class SectionRules(Model):
         0.5, "probability that one is material; the supplies share the rest", low=0, high=1
     )
     wall_elements: WallElements = quantity(
-        4, "elements of a wall between supplies, even", low=0, high=64
+        4, "elements of a wall between supplies, even; none if sealed", low=0, high=64
     )
 
 

@@ -101,9 +101,9 @@ def test_target_files_are_found_beside_the_scene(tmp_path: Path) -> None:
 
 BAD = [
     ("[actuator]\nlenght = 3", "actuator.lenght = 3", "known here: length"),
-    ("[actuator]\nlength = 0.1", "actuator.length = 0.1", "5 … 5000 mm"),
+    ("[actuator]\nlength = 0.05", "actuator.length = 0.05", "0.1 … 100000 mm"),
     ("[actuator]\nlength = nan", "actuator.length = nan", "finite"),
-    ("[actuator]\nlength = '100'", "actuator.length = '100'", "must be a number; 5 … 5000 mm"),
+    ("[actuator]\nlength = '100'", "actuator.length = '100'", "must be a number; 0.1 … 100000 mm"),
     ("[actuator]\nyoungs_modulus = 3e5", "300000.0", "5 … 50000 kPa"),
     ("[pressures]\nlevels = [0, 50000, 100000]", "pressures.levels[1] = 50000", "2000"),
     ("[pressures]\nlevels = [0, 50]", "pressures.levels[2]", "three ascending levels"),

@@ -16,11 +16,11 @@ from beamopt.chart.verdict import Answer, Truth, Verdict, Witness, judged
 from beamopt.rod.solution import Method
 from beamopt.rod.status import RodStatus
 
-__all__ = ["LIMIT", "METHODS", "SHIPPED", "Row", "Sample", "solve_sample"]
+__all__ = ["ADAPTIVE", "LIMIT", "METHODS", "Row", "Sample", "solve_sample"]
 
 LIMIT = 0.5
 """Seconds of processor time that a case may take."""
-SHIPPED = "adaptive"
+ADAPTIVE = "adaptive"
 """The method that the optimiser uses."""
 METHODS = tuple(method.name for method in all_methods())
 

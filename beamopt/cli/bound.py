@@ -19,6 +19,7 @@ from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound_folder import claim_bound_folder, write_bound
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError
@@ -74,6 +75,7 @@ def _scene_of(
     if kind == ".csv":
         return _scene_of_table(path, name, overrides)
     design = load_design(path)
+    say_findings(design)
     scene = Scene(
         name=name,
         actuator=design.actuator,

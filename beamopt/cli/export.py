@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import typer
+
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.export.run import ExportOptions, export_design
@@ -25,7 +27,7 @@ def export_command(
     name = path.resolve().name if is_run else path.resolve().stem
     exported = export_design(design, name, out or Path(f"{name}-export"), options)
     for note in exported.notes:
-        console.print(f"note: {note}", soft_wrap=True, markup=False)
+        typer.echo(f"note: {note}", err=True)
     for file, size in exported.files:
         console.print(f"{exported.folder / file}  {_size(size)}", soft_wrap=True, markup=False)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
 from beamopt.evolve.algorithm import Generation
@@ -93,6 +94,9 @@ def _report(result: Optimisation, folder: Path) -> None:
     console.print(f"[bold]{result.scene.name}[/], seed {result.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
+    if result.verdict.status is Status.JUDGED:
+        refined = result.refinement
+        say_findings(result.best if refined is None else refined.design)
 
 
 def _found(result: Optimisation) -> list[tuple[str, str]]:
@@ -139,8 +143,7 @@ def _outline(result: Optimisation) -> list[tuple[str, str]]:
     """What a sealed section is, as against the raster that the search judged."""
     if not result.best.seal.rules.sealed:
         return []
-    faults = [("note", str(fault)) for fault in result.best.outline.faults]
-    return [("L of outline", f"{result.outline_loss:.6g} mm²"), *faults]
+    return [("L of outline", f"{result.outline_loss:.6g} mm²")]
 
 
 def _unit(result: Optimisation) -> str:

@@ -10,6 +10,7 @@ import typer
 
 from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.cli.bound import gap_text
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import load_design
 from beamopt.errors import InputError
@@ -50,6 +51,7 @@ def refine_command(
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
         raise typer.Exit(1)
+    say_findings(found.design)
 
 
 def _refined_run(
@@ -137,6 +139,5 @@ def refinement_lines(found: Refinement, scene: Scene, bound: Certificate) -> lis
     if scene.making.rules_set:
         lines.append(("refined R", f"{after.R:.6g} mm²   (before: {before.R:.6g})"))
     lines.append(("ratio", f"{refined.ratio:.3f}   (before: {refined.ratio_before:.3f})"))
-    lines += [("note", str(fault)) for fault in found.faults]
     judged = f"{refined.evaluations} sections judged, {refined.flips:,} flips proposed"
     return [*lines, ("refinement", judged)]

@@ -173,7 +173,7 @@ def _surface(points: FloatArray, grid: PolarGrid, slack: float, unit: float) -> 
     return Contour(_clean(points, unit), None, True)
 
 
-def _clean(points: FloatArray, unit: float) -> FloatArray:
+def _clean(points: FloatArray, unit: float = 1.0) -> FloatArray:
     """Without vertices that stand where the one before stands, and without slits of no width."""
     shortest = SHORTEST * unit
     while len(points) > 2:

@@ -113,6 +113,7 @@ def export_design(
     if options.tolerance is not None:
         sagitta = options.tolerance
         outline = build_outline(grid, design.source, design.seal.rules, sagitta)
+    findings = design.findings_on(outline)
     faces = section_faces(outline, grid, sagitta)
     body = body_solids(faces, length, options.cap)
     mould = mould_solids(faces, grid, length, sagitta, options.base_thickness)
@@ -127,11 +128,12 @@ def export_design(
         files,
         sagitta=sagitta,
         cap=options.cap,
-        faults=outline.faults,
+        faults=findings,
     )
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
-    return Exported(folder, sizes, (*left_out, *notes_on(design, outline.faults)))
+    notes = notes_on(design, drawing, sagitta, findings)
+    return Exported(folder, sizes, (*left_out, *notes))
 
 
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:

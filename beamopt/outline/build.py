@@ -11,8 +11,8 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.outline.cells import regions as cell_regions
 from beamopt.outline.cells import territories
-from beamopt.outline.drawn import drawn_regions
-from beamopt.outline.faults import Fault, FaultKind
+from beamopt.outline.drawn import drawing_faults, drawn_regions, solid
+from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.inspection import (
     TOUCH,
     contacts,
@@ -20,7 +20,6 @@ from beamopt.outline.inspection import (
     pinches,
     thicknesses,
     topology,
-    worst_first,
 )
 from beamopt.outline.outline import Chamber, Loop, Outline, Piece
 from beamopt.outline.resampling import resample
@@ -84,8 +83,7 @@ def build_outline(
 def _at_usual_size(
     grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules, size: float
 ) -> tuple[PolarGrid, FeaturePoints | Sequence[Shape], SealRules]:
-    """The same section with an outer radius of 25 mm; lengths rounded to a lattice."""
-
+    """The same section with an outer radius of 25 mm; lengths rounded, so that sizes agree."""
     inner, skin, wall, rounding = (
         _usual(length, size)
         for length in (grid.inner_radius, rules.skin, rules.wall, rules.rounding)
@@ -128,6 +126,11 @@ def _build(
     faults = contacts(smooth, ring)
     if not (rules.sealed or isinstance(source, FeaturePoints)):
         faults += pinches(smooth)
+    notices = (
+        []
+        if isinstance(source, FeaturePoints)
+        else drawing_faults(source, ring, fine_sagitta(grid), smooth)
+    )
     if faults:
         # arcs of chambers along surfaces leave crescents that are no material
         pieces = tuple(
@@ -135,7 +138,7 @@ def _build(
             for piece in _pieces(ring, smooth)
             if 2 * piece.area > TOUCH * shapely.length(shapely.LinearRing(piece.exterior.points))
         )
-        faults += topology(pieces, smooth)
+        faults += topology(pieces, smooth) + notices
         chambers = _chambers(smooth)
         return Outline(pieces, chambers, worst_first(faults), moments, grid.outer_radius)
     # an eighth of the thinnest wall, so that chords of its two sides can not meet
@@ -153,7 +156,7 @@ def _build(
     pieces = _pieces(coarse_ring, regions)
     if inspected:
         faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
-    faults += topology(pieces, regions)
+    faults += topology(pieces, regions) + notices
     chambers = _chambers(regions)
     return Outline(pieces, chambers, worst_first(faults), moments, grid.outer_radius)
 
@@ -168,7 +171,8 @@ def _smooth(
     else:
         claimed = drawn_regions(source, fine_sagitta(grid))
     if not rules.sealed:
-        return tuple(parts_of(claim.intersection(ring)) for claim in claimed)
+        fine = fine_sagitta(grid)
+        return tuple(parts_of(solid(claim.intersection(ring), fine)) for claim in claimed)
     territory = territories(source, extent) if isinstance(source, FeaturePoints) else None
     return sealed_chambers(grid, claimed, territory, rules)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.outline.faults import Fault, FaultKind, Severity
+from beamopt.outline.faults import Fault, FaultKind
 from beamopt.outline.outline import Piece
 from beamopt.outline.rays import thin_places
 from beamopt.outline.smoothing import Region, loops_of
@@ -18,7 +18,7 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["TOUCH", "contacts", "nearest", "pinches", "thicknesses", "topology", "worst_first"]
+__all__ = ["TOUCH", "contacts", "nearest", "pinches", "thicknesses", "topology"]
 
 TOUCH = 0.01
 """mm; what is nearer is not separated by a wall."""
@@ -26,12 +26,6 @@ TOUCH = 0.01
 PINCH = 0.05  # mm; drawn shapes that touch overlap by their polygons in less than twice this
 SPACING = 0.1  # mm between rays
 FACING = 0.7  # cosine: walls that close in on each other by more than 45° are a corner's two sides
-
-
-def worst_first(faults: Sequence[Fault]) -> tuple[Fault, ...]:
-    """Fatal ones, then violations, then notices; otherwise as found."""
-    rank = {severity: k for k, severity in enumerate(reversed(Severity))}
-    return tuple(sorted(faults, key=lambda fault: rank[fault.severity]))
 
 
 def contacts(regions: Sequence[Region], ring: Polygon) -> list[Fault]:

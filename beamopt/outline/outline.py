@@ -77,6 +77,10 @@ class Chamber:
     exterior: FloatArray
     holes: tuple[FloatArray, ...]
 
+    def __post_init__(self) -> None:
+        for loop in (self.exterior, *self.holes):
+            loop.setflags(write=False)
+
     @cached_property
     def integrals(self) -> FloatArray:
         """(6,) of {1, x, y, x², y², xy} over the chamber, about the axis [mm², mm³, mm⁴]."""

@@ -60,7 +60,7 @@ def fragments_of(
     if rules.sealed:
         near, width = _near_in_mm(grid, points, cells, rules.wall / 2)
     else:
-        near, width = _near_in_elements(grid, cells, wall_steps(wall_elements))
+        near, width = _near_in_elements(grid, cells, wall_steps(wall_elements, rules))
     keys = np.concatenate([cells[..., None], near[..., :width]], axis=-1).reshape(-1, width + 1)
     border = keys[:, 1] != FAR if width else np.zeros(len(keys), dtype=np.bool_)
     found, inverse = _unique_rows(keys[border])

@@ -89,7 +89,7 @@ def _cut(
     """
     if corner == 0:
         return np.zeros(radius.shape, dtype=np.bool_)
-    touch = np.sqrt(middle**2 - corner**2)
+    touch = np.sqrt(max(middle**2 - corner**2, 0.0))
     along, across = radius * np.cos(angle), radius * np.sin(angle)
     beyond = along > touch if is_outer else along < touch
     within = (angle < np.arctan2(corner, touch)) & beyond

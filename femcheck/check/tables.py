@@ -160,7 +160,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
             "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
             "islands": len(outline.islands),
-            "faults": [str(fault) for fault in outline.faults],
+            "faults": [str(fault) for fault in checked.subject.design.findings],
         },
     }
     if subject.sealing_moved is not None:

@@ -9,6 +9,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
@@ -79,6 +80,7 @@ def _questions(request: RunRequest, options: LawChoice) -> list[Question]:
                 options.law_for(design.actuator)
             except InputError as error:
                 raise InputError(name, error.key, error.value, error.allowed) from None
+        say_findings(design, name if len(request.designs) > 1 else "")
         questions.append(Question.of(name, design, options))
     refuse_twins(request, [question.name for question in questions])
     return questions

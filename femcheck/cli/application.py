@@ -268,7 +268,7 @@ def write_baselines(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
     force: Annotated[bool, typer.Option("--force", help="Write over baselines there.")] = False,
 ) -> None:
-    """Write what every rung says of designs today, with tolerances from error estimates."""
+    """Write what every rung says of designs, with tolerances from error estimates."""
     from femcheck.cli.regression import baseline_command
 
     baseline_command(designs or [], out, meshes, workers, force=force)

@@ -10,6 +10,7 @@ from time import perf_counter
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.model import parse
@@ -43,6 +44,7 @@ def chart_command(request: ChartRequest) -> None:
         raise InputError("--seconds", "", request.seconds, "above 0 s")
     law = options_of(request.law)
     name, design = named_design(request.source)
+    say_findings(design)
     if request.levels is not None:
         data = design.model_dump(by_alias=True, exclude_none=True)
         design = parse(type(design), data | {"pressures": levels_of(request.levels)}, "--levels")

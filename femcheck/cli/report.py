@@ -51,7 +51,6 @@ def _lines(checked: Checked) -> list[tuple[str, str]]:
 
 def notes_of(subject: Subject, quality: Quality | None) -> Iterator[str]:
     """What a person should know about a section before believing anything about it."""
-    yield from map(str, subject.outline.faults)
     if quality is not None:
         yield from quality.notes
     if subject.has_islands:

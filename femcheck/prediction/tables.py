@@ -179,7 +179,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
             "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
             "islands": len(outline.islands),
-            "faults": [str(fault) for fault in outline.faults],
+            "faults": [str(fault) for fault in found.subject.design.findings],
         },
     }
     moved = found.subject.sealing_moved

@@ -31,6 +31,7 @@ from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 from tests.clocks import run_away
 from tests.rod.samples import PLANE, plain_law
+from tests.validation.resume import everything
 
 FOUND, LIMIT_POINT = RodStatus.CONVERGED, RodStatus.LIMIT_POINT
 TIP: FloatArray = np.array([0.0, 60.0, 80.0])  # of a rod of length 100
@@ -229,6 +230,17 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
     assert not (there / JOURNAL).exists()
 
 
+def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
+    journal = Journal(tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)})
+    for sample in made[1][2:7]:
+        journal.add(sample)
+    before = everything(tmp_path)
+    with pytest.raises(InputError) as caught:
+        run_stability(tmp_path, 6, methods=FEW, resume=True)
+    assert (caught.value.where, caught.value.value) == ("--samples", 6)
+    assert everything(tmp_path) == before
+
+
 def test_another_map_is_not_gone_on_with(tmp_path: Path) -> None:
     path = tmp_path / JOURNAL
     Journal(path, {"seed": 1, "methods": list(FEW)})
@@ -273,7 +285,7 @@ def test_every_verdict_has_its_look() -> None:
     assert len(set(letters)) == len(letters)
 
 
-def test_the_reading_names_the_two(made: tuple[Path, list[Sample]]) -> None:
+def test_the_reading_has_the_methods_in_their_order(made: tuple[Path, list[Sample]]) -> None:
     """Modes that are right against shooting that is on the wrong branch."""
     _, samples = made
     spoilt = [
@@ -283,8 +295,8 @@ def test_the_reading_names_the_two(made: tuple[Path, list[Sample]]) -> None:
         for sample in samples
     ]
     text = reading(spoilt)
-    assert "**modes** as the default (100.0% success" in text
-    assert "**shooting** as the second" in text
+    assert " ".join(text.split()).count("modes 1.000, shooting -1.000.") == 1
+    assert "First: **modes** (100.0% success" in text
     assert "wrong branch 8" in text
 
 

@@ -52,14 +52,14 @@ def test_times_stand_in_one_file(whole: Path) -> None:
 
 
 def test_limits(whole: Path) -> None:
-    """Row by row: found, on the finer mesh, by others."""
+    """Row by row: found, on the finer mesh, in closed form."""
     head, *lines = (line.split(",") for line in (whole / "limits.csv").read_text().splitlines())
     rows = {line[1]: dict(zip(head, line, strict=True)) for line in lines}
     assert rows["60"]["limit_kPa"] == rows["60"]["finer_kPa"] == "6.0"
     assert rows["60"]["coarse_over_finer"] == "1.0"
     assert rows["60"]["snaps_kPa"] == "1.5"
-    assert rows["90"]["published_kPa"] == "10"
-    assert rows["90"]["over_published"] == "0.9"
+    assert rows["90"]["exact_kPa"] == "10.0"
+    assert rows["90"]["over_exact"] == "0.9"
     assert rows["130"]["limit_kPa"] == ""
     assert rows["130"]["status"] == "stable equilibrium"
 
