@@ -29,6 +29,7 @@ from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
+from tests.clocks import run_away
 from tests.journals import flipped
 from tests.rod.samples import PLANE, plain_law
 from tests.validation.resume import everything
@@ -101,6 +102,17 @@ def test_two_have_to_agree() -> None:
     assert compared(here, near, 100.0).witness is Witness.BOTH
     assert compared(here, far, 100.0).witness is Witness.NEITHER
     assert compared(here, solution(LIMIT_POINT, NOWHERE, 0.9), 100.0).witness is Witness.NEITHER
+
+
+@pytest.mark.parametrize("index", [3, 4, 5])
+def test_the_truth_does_not_depend_on_a_clock(index: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is found by so many iterations, in whatever time a busy machine takes for them."""
+    loaded = LoadedSection.of(case_of(0, index))
+    wanted = true_equilibrium(loaded.rod, loaded.rest)
+    run_away(monkeypatch)
+    found = true_equilibrium(loaded.rod, loaded.rest)
+    assert (found.witness, found.status) == (wanted.witness, wanted.status)
+    np.testing.assert_array_equal(found.tip, wanted.tip)
 
 
 @pytest.mark.parametrize(
