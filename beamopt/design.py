@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules, rod_model
 from beamopt.arrays import FloatArray
@@ -16,9 +16,11 @@ from beamopt.chambers import DrawnChamber, Points
 from beamopt.climb import Climb, climb
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
-from beamopt.model import Count, Model, Number, parse, quantity, read_json
+from beamopt.grid_keys import Grid, Levels, WallElements
+from beamopt.model import Model, parse, quantity, read_json
 from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
+from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import RodModel, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.response import LinearResponse, linear_response
@@ -27,9 +29,8 @@ from beamopt.seal import Seal
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Shape
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
-from beamopt.section.saint_venant import section_saint_venant
+from beamopt.section.saint_venant import SaintVenant, section_saint_venant
 from beamopt.workspace import Workspace, pressure_grid
 
 __all__ = [
@@ -42,61 +43,6 @@ __all__ = [
 ]
 
 SCHEMA = "beamopt-design/1"
-MOST_ELEMENTS = 4_000_000
-
-Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2000)]
-
-
-class Grid(Model):
-    """The polar grid of equal-area elements."""
-
-    inner_radius: Number = quantity(10.0, "inner radius of the ring", unit="mm", low=0, high=1000)
-    outer_radius: Number = quantity(25.0, "outer radius of the ring", unit="mm", low=0.5, high=1000)
-    radial: Count = quantity(128, "elements along the radius", low=4, high=4096)
-    angular: Count = quantity(360, "elements around", low=8, high=16384)
-    start: Number = quantity(
-        0.0, "angle at which a sector starts", unit="degrees", low=-360, high=360
-    )
-    stop: Number = quantity(
-        360.0, "angle at which it ends; 360 more is a ring", unit="degrees", low=-360, high=720
-    )
-
-    @model_validator(mode="after")
-    def _is_a_ring(self) -> Grid:
-        if self.radial * self.angular > MOST_ELEMENTS:
-            raise ValueError(f"radial × angular may be at most {MOST_ELEMENTS:,} elements")
-        self.build()
-        return self
-
-    def build(self) -> PolarGrid:
-        """The grid that the section floor works on."""
-        return _polar_grid(**self.model_dump())
-
-
-@lru_cache(maxsize=16)
-def _polar_grid(**values: Any) -> PolarGrid:
-    """One grid for equal values: its centroids and integrals are computed once."""
-    return PolarGrid(**values)
-
-
-def _ascending(levels: tuple[float, float, float]) -> tuple[float, float, float]:
-    if not levels[0] < levels[1] < levels[2]:
-        raise ValueError("three pressures in kPa, ascending")
-    return levels
-
-
-Levels = Annotated[tuple[Pressure, Pressure, Pressure], AfterValidator(_ascending)]
-"""The three levels [kPa] that each supply takes in the workspace's 27 combinations."""
-
-
-def _even(count: int) -> int:
-    if count % 2:
-        raise ValueError("an even number: half of a wall lies on each side of a boundary")
-    return count
-
-
-WallElements = Annotated[int, Field(strict=True), AfterValidator(_even)]
-"""Elements of a wall between chambers of different supplies."""
 
 
 class Design(Model):
@@ -244,9 +190,19 @@ class Design(Model):
         may_climb = self.loaded_rod.loads.any and self.rod.rung in ("auto", "loaded")
         if not may_climb or self.rod.twist == "stiff":
             return SectionValues(self.moments)
-        grid, labels = self.section.grid, self.section.labels
-        known = section_saint_venant(grid, labels, self.loaded_rod.poissons_ratio)
-        return SectionValues(self.moments, known)
+        return SectionValues(self.moments, self.saint_venant(self.loaded_rod.poissons_ratio))
+
+    def saint_venant(self, poissons_ratio: float) -> SaintVenant:
+        """Torsion and shear of the outline of a sealed design, of the raster of others.
+
+        Raises
+        ------
+        ValueError : `poissons_ratio` out of range.
+        InputError : the outline can not be triangulated.
+        """
+        if self.seal.rules.sealed:
+            return outline_saint_venant(self.outline, poissons_ratio)
+        return section_saint_venant(self.section.grid, self.section.labels, poissons_ratio)
 
     @cached_property
     def workspace(self) -> Workspace:
@@ -328,8 +284,7 @@ def load_design(path: str | Path) -> Design:
 def section_values(data: dict[str, Any], poissons_ratio: float) -> SectionValues:
     """What the rod needs to know of the section of a whole design, given as its file's content."""
     design = parse(Design, data, "rod.segments")
-    grid, labels = design.section.grid, design.section.labels
-    return SectionValues(design.moments, section_saint_venant(grid, labels, poissons_ratio))
+    return SectionValues(design.moments, design.saint_venant(poissons_ratio))
 
 
 def _found(tips: Tips, pressures: FloatArray) -> FloatArray:

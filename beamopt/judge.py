@@ -174,6 +174,8 @@ class Judge:
         moments = Moments(measured.moments.raw[k])
         if not self.rod.twists:
             return SectionValues(moments)
+        if measured.saint_venant:
+            return SectionValues(moments, measured.saint_venant[k])
         labels, nu = measured.labels[k], self.rod.poissons_ratio
         return SectionValues(moments, section_saint_venant(self.grid, labels, nu))
 

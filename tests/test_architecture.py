@@ -38,6 +38,7 @@ FLOORS = [
     ["beamopt.workspace", "beamopt.aim", "beamopt.reach"],
     [
         "beamopt.chambers",
+        "beamopt.grid_keys",
         "beamopt.actuator",
         "beamopt.climb",
         "beamopt.answers",

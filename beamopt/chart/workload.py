@@ -57,8 +57,8 @@ def workload_of(scene: Scene, seed: int | None = None) -> Workload:
     model = scene.climb.model
     if scene.target.kind == "section" and seed is None:
         design = load_design(str(scene.target.file))
-        section = _values(scene, model, design.section)
-        section = SectionValues(design.moments, section.saint_venant)
+        known = design.saint_venant(model.poissons_ratio) if model.twists else None
+        section = SectionValues(design.moments, known)
     else:
         section = random_section(scene, model, (seed or 0,))
     return Workload(scene.name, model, section, pressure_grid(scene.pressures.levels))

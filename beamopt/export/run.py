@@ -132,7 +132,8 @@ def export_design(
     )
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
-    return Exported(folder, sizes, (*left_out, *notes_on(design, findings)))
+    notes = notes_on(design, drawing, sagitta, findings)
+    return Exported(folder, sizes, (*left_out, *notes))
 
 
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -12,6 +12,7 @@ import numpy as np
 from beamopt.aim import Aim
 from beamopt.answers import Answers
 from beamopt.judge import Judge, Status, Verdict
+from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import SectionValues
 from beamopt.section.feature_points import SUPPLIES, FeaturePoints
 from beamopt.section.moments import Moments
@@ -68,7 +69,7 @@ Truth = Callable[[FeaturePoints], Judged]
 
 
 def judged_on(judge: Judge, view: View) -> Truth:
-    """What judges feature points on their raster, or on their outline: moments and chambers.
+    """Judge of feature points on their raster, or on their outline: moments, torsion, chambers.
 
     How symmetric a section is, is measured on the raster in any case.
     """
@@ -79,6 +80,9 @@ def judged_on(judge: Judge, view: View) -> Truth:
         if view is View.OUTLINE:
             outline = build_outline(judge.grid, points, judge.rules, inspected=False)
             measured = replace(measured, moments=Moments(outline.moments.raw[None]))
+            if judge.rod.twists and measured.moments.is_stiff[0]:
+                known = outline_saint_venant(outline, judge.rod.poissons_ratio)
+                measured = replace(measured, saint_venant=(known,))
             if judge.making.counts_chambers:
                 found = [chamber.supply for chamber in outline.chambers]
                 chambers = np.array([[found.count(supply) for supply in SUPPLIES]])

@@ -19,6 +19,7 @@ from beamopt.section.moments import Moments, sum_and_find_runs
 from beamopt.section.neighbours import count_edges, neighbour_ratio
 from beamopt.section.raster import Tiling, nearest_types, tiling
 from beamopt.section.runs import Runs, room_for_runs
+from beamopt.section.saint_venant import SaintVenant
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.section.seal_table import SealTable, Work, seal_table, work
 from beamopt.section.sealing import sealed_cells
@@ -37,6 +38,7 @@ class Phenotypes:
     labels : (n, radial, angular) types of elements, where they were asked for; else (1, …).
     chambers : (n, 3) separate chambers of each supply, where they were asked for; else (0, 3).
     asymmetry : (n,) share of the area that is not symmetric, where asked for; else (0,).
+    saint_venant : torsion and shear of each, where they are not to be the raster's; else none.
     """
 
     moments: Moments
@@ -44,6 +46,7 @@ class Phenotypes:
     labels: LabelArray
     chambers: IndexArray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     asymmetry: FloatArray = field(default_factory=lambda: np.zeros(0))
+    saint_venant: tuple[SaintVenant, ...] = ()
 
 
 def phenotypes(

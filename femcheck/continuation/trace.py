@@ -144,9 +144,8 @@ class _Trace:
                 if length < self._steps.smallest or tries < 0:
                     return self._ended or (tried.status, leg.here.load)
                 continue
-            beyond = self._stepper.share_of_law(tried) > 1
-            if self._ended is None and beyond:
-                passed = self._passing(leg, tried, length)
+            if self._stepper.share_of_law(tried) > 1:
+                passed = self._ended or self._passing(leg, tried, length)
                 if passed is not None:
                     return passed
             if self._ended is None and is_past(tried):
@@ -158,7 +157,7 @@ class _Trace:
                 self.volume = float("nan")
                 self._catch_up(tried)
             self._take(tried, self._ended)
-            if self._ended is not None and (beyond or self._is_far(self._ended, tried)):
+            if self._ended is not None and self._is_far(self._ended, tried):
                 return self._ended
             assert slope_there is not None
             leg = Leg(tried, slope_there, (leg.slope, length))
@@ -247,8 +246,8 @@ class _Trace:
         if inside is not leg.here:
             self._take(inside, None)
         part = (1 - share(inside)) / (share(outside) - share(inside))
-        self.volume = inside.volume + part * (outside.volume - inside.volume)
-        return Status.BEYOND_LAW, inside.load + part * (outside.load - inside.load)
+        self.volume = float(inside.volume + part * (outside.volume - inside.volume))
+        return Status.BEYOND_LAW, float(inside.load + part * (outside.load - inside.load))
 
     def _ending(self, leg: Leg, there: PathPoint, length: float) -> End:
         """What ended the stable part between two points, and at which load."""

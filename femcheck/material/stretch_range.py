@@ -53,7 +53,7 @@ class StretchRange(NamedTuple):
         if math.isinf(self.least):
             return ""
         parts = (f"{name} {_shown(end)}" for name, end in zip(self._fields, self, strict=True))
-        return f"rises up to a stretch of {self.least:.3g} ({', '.join(parts)})"
+        return f"{self.least:.3g} ({', '.join(parts)})"
 
 
 def _shown(end: float) -> str:
@@ -86,27 +86,32 @@ def _end(slopes: Slopes, C2: float, t: float) -> float:
 
 
 def _least_rise(stretch: FloatArray, slopes: Slopes, C2: float, t: float) -> FloatArray:
-    """(n,) positive where the nominal stress rises and Hill's condition holds; NaN: no energy."""
+    """(n,) positive up to where the nominal stress or Hill's condition fails; NaN: no energy.
+
+    Hill's condition holds at rest, and so up to where the determinant vanishes.
+    """
     powers = np.array([2.0, 2 * t, -2 * (1 + t)])
     a = stretch[:, None] ** powers  # squares of the principal stretches
-    b = 1 / a
     with np.errstate(all="ignore"):
+        b = 1 / a
         slope, bend = slopes(a.sum(axis=1) - 3)
         first = (powers * a).sum(axis=1)  # of I1, by ln λ
         second = (powers * (powers - 1) * a).sum(axis=1)  # of I1, λ² times that by λ
         other = (powers * (powers + 1) * b).sum(axis=1)  # of I2, likewise
         nominal = bend * first**2 + slope * second + C2 * other
-        along = 2 * (a[:, :2] - a[:, 2:])  # of I1, by the logarithms of two stretches
-        near, far, both = (
-            4 * (slope * one + C2 * its)
-            for one, its in (
-                (a[:, 0] + a[:, 2], b[:, 0] + b[:, 2]),
-                (a[:, 1] + a[:, 2], b[:, 1] + b[:, 2]),
-                (a[:, 2], b[:, 2]),
-            )
-        )
-        near = near + bend * along[:, 0] ** 2
-        far = far + bend * along[:, 1] ** 2
-        both = both + bend * along[:, 0] * along[:, 1]
-        definite = np.minimum(near, far - both**2 / near)
-    return np.asarray(np.minimum(nominal, definite))
+        return np.asarray(np.minimum(nominal, _determinant(a, b, slope, bend, C2)))
+
+
+def _determinant(
+    a: FloatArray, b: FloatArray, slope: FloatArray, bend: FloatArray, C2: float
+) -> FloatArray:
+    """(n,) of the second derivative of W by the logarithms of two stretches, over 16.
+
+    That is 4 f′ M(a) + 4 C2 M(b) + f″ g gᵀ, M(p) = [[p1 + p3, p3], [p3, p2 + p3]] and
+    g = 2 (a1 − a3, a2 − a3); multiplied out all parts are sums of what is positive.
+    """
+    gaps = (np.roll(a, -1, axis=1) - np.roll(a, 1, axis=1)) ** 2  # (a2 − a3)², …
+    plain = slope**2 * b.sum(axis=1) + C2**2 * a.sum(axis=1)  # a1 a2 a3 = 1
+    mixed = slope * C2 * (a.sum(axis=1) * b.sum(axis=1) - 3)
+    bent = slope * (a * gaps).sum(axis=1) + C2 * (b * gaps).sum(axis=1)
+    return np.asarray(plain + mixed + bend * bent)

@@ -139,7 +139,9 @@ def _uncertain(found: Prediction) -> str:
     if alone:
         parts.append(f"on one mesh only: {', '.join(one.ray.text for one in alone)}")
     if not parts:
-        parts.append("what the meshes differ by could turn it over")
+        known = not np.isnan(found.mesh_share)
+        by = "what the meshes differ by could turn it over"
+        parts.append(by if known else "no combination has an answer on both meshes")
     return f"; uncertain, {'; '.join(parts)}"
 
 
@@ -158,8 +160,8 @@ def _on_the_coarse(one: RayEnds) -> str:
     """Where the same ray ends on the coarse mesh."""
     if one.coarse is None:
         return "on one mesh only"
-    load, physical = one.loads[1], one.coarse.status.is_settled
-    return f"{'' if physical else 'above '}{load:.3g} kPa on the coarse mesh"
+    above = "" if one.coarse.status.is_settled else "above "
+    return f"{above}{one.loads[1]:.3g} kPa on the coarse mesh"
 
 
 def _percent(share: float) -> str:
@@ -173,7 +175,8 @@ def _range(found: Prediction) -> str:
 def _passed(found: Prediction, number: int) -> str:
     """Where a ray leaves what the law describes."""
     result, ray = found.result(number), found.rays[number]
-    said = f"is passed at {result.critical:.3g} kPa ({ray.text}"
+    coarse = _on_the_coarse(found.ends(number))
+    said = f"is passed at {result.critical:.3g} kPa ({ray.text}, {coarse}"
     if result.last is None:
         return f"{said})"
     x, y, z = np.round(result.last.stretch_at, 1) + 0.0

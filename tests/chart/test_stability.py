@@ -29,6 +29,8 @@ from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
+from tests.clocks import run_away
+from tests.journals import flipped
 from tests.rod.samples import PLANE, plain_law
 from tests.validation.resume import everything
 
@@ -100,6 +102,17 @@ def test_two_have_to_agree() -> None:
     assert compared(here, near, 100.0).witness is Witness.BOTH
     assert compared(here, far, 100.0).witness is Witness.NEITHER
     assert compared(here, solution(LIMIT_POINT, NOWHERE, 0.9), 100.0).witness is Witness.NEITHER
+
+
+@pytest.mark.parametrize("index", [3, 4, 5])
+def test_the_truth_does_not_depend_on_a_clock(index: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is found by so many iterations, in whatever time a busy machine takes for them."""
+    loaded = LoadedSection.of(case_of(0, index))
+    wanted = true_equilibrium(loaded.rod, loaded.rest)
+    run_away(monkeypatch)
+    found = true_equilibrium(loaded.rod, loaded.rest)
+    assert (found.witness, found.status) == (wanted.witness, wanted.status)
+    np.testing.assert_array_equal(found.tip, wanted.tip)
 
 
 @pytest.mark.parametrize(
@@ -216,6 +229,15 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
     assert came == [0, 1, 7]
     assert without_seconds(there / "stability.csv") == without_seconds(folder / "stability.csv")
     assert not (there / JOURNAL).exists()
+
+
+def test_every_changed_digit_is_noticed(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
+    path, asked = tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)}
+    Journal(path, asked).add(made[1][0])
+    for damaged in flipped(path.read_bytes()):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"line [12]"):
+            Journal(path, asked)
 
 
 def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:

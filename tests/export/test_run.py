@@ -19,7 +19,7 @@ from beamopt.export.step import is_installed
 from beamopt.outline.build import build_outline
 from beamopt.outline.faults import summaries
 from beamopt.seal import Seal
-from tests.export.samples import SAMPLES, SEALED, drawn
+from tests.export.samples import SAMPLES, SEALED, drawn, random_section
 
 LIGHT = ExportOptions(formats=("stl", "svg"))
 COMMAND = "import sys; from beamopt.cli.application import run; sys.exit(run(sys.argv[1:]))"
@@ -92,6 +92,24 @@ def test_what_the_files_leave_out_is_said(here: Path) -> None:
     assert notes[0] == "one of 2 segments' sections, extruded over the whole length"
     assert "curved" in notes[1]
     assert json.loads((here / "out" / "export.json").read_text())["notes"] == list(notes)
+
+
+def test_a_skin_or_wall_thinner_than_asked_is_said(here: Path) -> None:
+    """Edges take a little off; finer ones do not, and then nothing is said."""
+    design = random_section(3, skin=1.5)
+    records, notes = [], []
+    for tolerance in (None, 5e-4):
+        options = ExportOptions(("svg",), tolerance=tolerance)
+        notes.append(export_design(design, "a", here / f"{tolerance}", options).notes)
+        records.append(json.loads((here / f"{tolerance}" / "export.json").read_text()))
+    for record in records:
+        assert record["asked_skin_mm"] == design.seal.skin == 1.5
+        assert record["asked_wall_mm"] == design.seal.wall
+    coarse, fine = records
+    assert coarse["least_skin_mm"] < 0.995 * 1.5
+    assert any(f"{coarse['least_skin_mm']:.3f} mm" in note for note in notes[0])
+    assert fine["least_skin_mm"] == pytest.approx(1.5, abs=2e-3)
+    assert not notes[1]
 
 
 def test_the_tolerance_of_edges(here: Path) -> None:

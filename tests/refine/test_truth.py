@@ -31,8 +31,14 @@ def test_the_outline_as_it_is_built(name: str) -> None:
     np.testing.assert_array_equal(found.section.moments.raw, outline.moments.raw)
 
 
-def test_the_outline_as_a_design_has_it() -> None:
-    scene, judge = scene_of("sealed-section", *SMALL), judge_of("sealed-section")
+TWISTS = ("loads.line_force=[2.0,0.0,0.0]", 'rod.rung="loaded"', 'rod.twist="saint-venant"')
+
+
+@pytest.mark.parametrize("loads", [(), TWISTS], ids=["pressure alone", "twisted"])
+def test_the_outline_as_a_design_has_it(loads: tuple[str, ...]) -> None:
+    """Under loads also its torsion and shear."""
+    asked = ("sealed-section", *SMALL, *loads)
+    scene, judge = scene_of(*asked), judge_of(*asked)
     found = judged(judge, random_points(2), View.OUTLINE)
     workspace = scene.design_of(found.points).workspace
     assert pytest.approx(float(judge.aim.loss(workspace.tips)), rel=1e-12) == found.verdict.L

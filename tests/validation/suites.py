@@ -8,6 +8,7 @@ from tests.validation import (
     accuracy,
     arc,
     genotypes,
+    geometry,
     material,
     never_worse,
     published_solids,
@@ -25,6 +26,7 @@ __all__ = ["SUITES"]
 SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "arc": arc.checks,
     "genotypes": genotypes.checks,
+    "geometry": geometry.checks,
     "symmetry": symmetry.checks,
     "resume": resume.checks,
     "solid": solid.checks,

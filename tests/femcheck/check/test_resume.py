@@ -19,8 +19,8 @@ from femcheck.check.kept import case_file, read_case, write_case
 from femcheck.check.run import check_design
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
+from tests.clocks import busy, run_away
 from tests.femcheck.check.small import here, kept_files, quick_options, small_options, small_subject
-from tests.femcheck.clocks import busy, run_away
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 Done = tuple[Checked, Path]

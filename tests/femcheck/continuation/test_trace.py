@@ -27,7 +27,7 @@ from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State
-from tests.femcheck.clocks import Clock, run_away
+from tests.clocks import Clock, run_away
 from tests.femcheck.inertia import needs_inertia
 from tests.femcheck.solid.tubes import tube
 
@@ -424,6 +424,16 @@ def test_no_clock_has_a_say_unless_it_is_asked_to(
         np.testing.assert_array_equal(one.state.x, other.state.x)
     assert path.statistics.iterations == traced.statistics.iterations
     assert path.statistics.seconds > 1e4  # the clock did jump
+
+
+def test_times_are_of_the_processor(soft: Equilibrium, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What passes on the wall while other programs have the processor is no cost of a path."""
+    run_away(monkeypatch)
+    monkeypatch.setattr(time, "process_time", lambda: 7.0)
+    spent = follow(soft, [5.0]).statistics
+    assert spent.iterations > 0
+    times = (spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds)
+    assert times == (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("readings", range(2, 60, 3))

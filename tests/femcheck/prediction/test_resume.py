@@ -25,8 +25,8 @@ from femcheck.prediction.kept import ray_file, read_ray, write_ray
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import RayResult, trace_ray
 from femcheck.solid.winding import Wound
+from tests.clocks import busy, run_away
 from tests.femcheck.check.small import kept_files
-from tests.femcheck.clocks import busy, run_away
 from tests.femcheck.prediction.small import predict, soft_subject
 
 pytestmark = pytest.mark.usefixtures("undrawn")

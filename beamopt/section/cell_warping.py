@@ -1,4 +1,4 @@
-"""The Saint-Venant solve of a section on a mesh of bilinear quadrilaterals."""
+"""The Saint-Venant solve of a section on bilinear quadrilaterals or quadratic triangles."""
 
 from __future__ import annotations
 
@@ -9,31 +9,35 @@ from beamopt.section.feature_points import MATERIAL
 from beamopt.section.grid import PolarGrid
 from beamopt.section.warping_sums import WarpingSums
 
-__all__ = ["quad_warping", "section_quads"]
+__all__ = ["cell_warping", "section_quads"]
 
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+DUNAVANT = np.array(
+    [[0.445948490915965, 0.223381589678011], [0.091576213509771, 0.109951743655322]]
+)
+"""Of two orbits of three points in a triangle: barycentric coordinate, weight (Dunavant 1985)."""
 
 
-def quad_warping(nodes: FloatArray, quads: IndexArray, poissons_ratio: float) -> WarpingSums:
-    """Solve for ω, ψ_1, ψ_2 on at least one quadrilateral; see `saint_venant`.
+def cell_warping(nodes: FloatArray, cells: IndexArray, poissons_ratio: float) -> WarpingSums:
+    """Solve for ω, ψ_1, ψ_2 on at least one cell; see `saint_venant`.
 
     K ω = ∫ ∇N·g with g = (y, −x), K ψ_j = ∫ N x_j + ∇N·D e_j with
     D = ν/(4(1 + ν)) [[x² − y², 2xy], [2xy, y² − x²]]: Pilkey, Analysis and Design of Elastic Beams
     (2002), 5.4 and 6.3, his loads divided by 2(1 + ν) and taken along the axes. The stresses are
     τ_0 = ∇ω − g, τ_j = ∇ψ_j − D e_j. Each piece bends about its own centroid.
     """
-    used, numbers = np.unique(quads, return_inverse=True)
-    quads = numbers.reshape(-1, 4)
+    used, numbers = np.unique(cells, return_inverse=True)
+    cells = numbers.reshape(cells.shape)
     count = used.size
-    shapes, gradients, at, dA = _elements(nodes[used], quads)
-    part = _pieces(quads, count)
+    shapes, gradients, at, dA = _elements(nodes[used], cells)
+    part = _pieces(cells, count)
 
-    of_quad = part[quads[:, 0]]
-    areas = np.bincount(of_quad, dA.sum(axis=1))
-    first = [np.bincount(of_quad, (at[..., i] * dA).sum(axis=1)) for i in range(2)]
+    of_cell = part[cells[:, 0]]
+    areas = np.bincount(of_cell, dA.sum(axis=1))
+    first = [np.bincount(of_cell, (at[..., i] * dA).sum(axis=1)) for i in range(2)]
     own = np.stack(first, axis=1) / areas[:, None]
     centroid = areas @ own / areas.sum()
-    from_own, about = at - own[of_quad][:, None], at - centroid
+    from_own, about = at - own[of_cell][:, None], at - centroid
 
     x, y = from_own[..., 0], from_own[..., 1]
     squares, product = x * x - y * y, 2 * x * y
@@ -46,10 +50,10 @@ def quad_warping(nodes: FloatArray, quads: IndexArray, poissons_ratio: float) ->
     stiffness = np.einsum("egik,egil,eg->ekl", gradients, gradients, dA, optimize=True)
     load = np.einsum("egik,egif,eg->ekf", gradients, fields, dA, optimize=True)
     mass = np.einsum("gk,egj,eg->ekj", shapes, from_own, dA, optimize=True)
-    loads, masses = _gather(quads, load, count), _gather(quads, mass, count)
+    loads, masses = _gather(cells, load, count), _gather(cells, mass, count)
     sides = loads.copy()
     sides[:, 1:] += masses
-    values = _solve(quads, stiffness, sides, np.unique(part, return_index=True)[1])
+    values = _solve(cells, stiffness, sides, np.unique(part, return_index=True)[1])
 
     # K u = f, so that ∫ (∇u_a − d_a)·(∇u_b − d_b) = u_a·f_b − u_a·l_b − l_a·u_b + ∫ d_a·d_b
     gram = values.T @ (sides - loads) - loads.T @ values
@@ -91,15 +95,14 @@ def section_quads(grid: PolarGrid, labels: LabelArray) -> tuple[FloatArray, Inde
 
 
 def _elements(
-    nodes: FloatArray, quads: IndexArray
+    nodes: FloatArray, cells: IndexArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """At the 3 × 3 Gauss points: N (9, 4), ∇N (m, 9, 2, 4), places (m, 9, 2), areas dA (m, 9)."""
-    line, weight = np.polynomial.legendre.leggauss(3)
-    local = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
-    factors = 1 + local[:, None, :] * CORNERS
-    shapes = factors.prod(axis=-1) / 4
-    slopes = np.stack([CORNERS[:, 0] * factors[..., 1], CORNERS[:, 1] * factors[..., 0]], 1) / 4
-    corners = nodes[quads]
+    """At the g Gauss points of m cells with n nodes.
+
+    N (g, n), ∇N (m, g, 2, n), places (m, g, 2), areas dA (m, g).
+    """
+    shapes, slopes, weights = _quadrilateral() if cells.shape[1] == 4 else _triangle()
+    corners = nodes[cells]
     jacobian = np.einsum("gak,eki->egai", slopes, corners, optimize=True)
     (xa, ya), (xb, yb) = np.moveaxis(jacobian, (-2, -1), (0, 1))
     determinant = xa * yb - ya * xb
@@ -107,34 +110,60 @@ def _elements(
     gradients = np.einsum("egia,gak->egik", inverse, slopes, optimize=True)
     gradients /= determinant[..., None, None]
     at = np.einsum("gk,eki->egi", shapes, corners, optimize=True)
-    return shapes, gradients, at, np.abs(determinant) * np.outer(weight, weight).ravel()
+    return shapes, gradients, at, np.abs(determinant) * weights
 
 
-def _pieces(quads: IndexArray, count: int) -> IndexArray:
+def _quadrilateral() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Bilinear N (9, 4), their derivatives (9, 2, 4) and the weights (9,) of 3 × 3 Gauss points."""
+    line, weight = np.polynomial.legendre.leggauss(3)
+    local = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    factors = 1 + local[:, None, :] * CORNERS
+    slopes = np.stack([CORNERS[:, 0] * factors[..., 1], CORNERS[:, 1] * factors[..., 0]], 1) / 4
+    return factors.prod(axis=-1) / 4, slopes, np.outer(weight, weight).ravel()
+
+
+def _triangle() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Quadratic N (6, 6), derivatives (6, 2, 6) and weights (6,) of a rule of fourth degree.
+
+    Corners first, then the middles of the sides from each corner to the next.
+    """
+    at, weight = (np.repeat(values, 3) for values in (DUNAVANT[:, 0], DUNAVANT[:, 1]))
+    barycentric = np.repeat(at[:, None], 3, axis=1)
+    barycentric[np.arange(6), np.arange(6) % 3] = 1 - 2 * at
+    slopes_of = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
+    following = np.roll(barycentric, -1, axis=1)
+    shapes = np.hstack([barycentric * (2 * barycentric - 1), 4 * barycentric * following])
+    own, after = slopes_of[None], np.roll(slopes_of, -1, axis=1)[None]
+    corner = (4 * barycentric - 1)[:, None] * own
+    middle = 4 * (barycentric[:, None] * after + following[:, None] * own)
+    return shapes, np.concatenate([corner, middle], axis=2), weight / 2
+
+
+def _pieces(cells: IndexArray, count: int) -> IndexArray:
     """(count,) connected piece of each node."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    ends = np.repeat(quads[:, 0], 3), quads[:, 1:].ravel()
+    ends = np.repeat(cells[:, 0], cells.shape[1] - 1), cells[:, 1:].ravel()
     graph = coo_array((np.ones(ends[0].size), ends), shape=(count, count))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _gather(quads: IndexArray, load: FloatArray, count: int) -> FloatArray:
-    """Sum element vectors (m, 4, f) at the nodes: (count, f)."""
-    sums = [np.bincount(quads.ravel(), part.ravel(), count) for part in np.moveaxis(load, -1, 0)]
+def _gather(cells: IndexArray, load: FloatArray, count: int) -> FloatArray:
+    """Sum element vectors (m, n, f) at the nodes: (count, f)."""
+    sums = [np.bincount(cells.ravel(), part.ravel(), count) for part in np.moveaxis(load, -1, 0)]
     return np.stack(sums, axis=1)
 
 
 def _solve(
-    quads: IndexArray, stiffness: FloatArray, sides: FloatArray, pins: IndexArray
+    cells: IndexArray, stiffness: FloatArray, sides: FloatArray, pins: IndexArray
 ) -> FloatArray:
     """Solve with one factorisation for all columns of `sides`, the nodes `pins` held at zero."""
     from scipy.sparse import coo_array, csc_array
     from scipy.sparse.linalg import splu
 
-    count = sides.shape[0]
-    places = np.repeat(quads, 4, axis=1).ravel(), np.tile(quads, (1, 4)).ravel()
+    count, corners = sides.shape[0], cells.shape[1]
+    places = np.repeat(cells, corners, axis=1).ravel(), np.tile(cells, (1, corners)).ravel()
     matrix = csc_array(coo_array((stiffness.ravel(), places), shape=(count, count)))
     free = np.delete(np.arange(count), pins)
     values = np.zeros_like(sides)
