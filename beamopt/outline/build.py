@@ -107,7 +107,7 @@ def _usual_shape(shape: Shape, size: float) -> Shape:
         x, y = (_usual(value, size) for value in shape.center)
         return Circle(shape.supply, (x, y), max(_usual(shape.radius, size), LATTICE))
     inner, outer = (_usual(radius, size) for radius in shape.r)
-    corner = _usual(shape.corner, size)
+    corner = min(_usual(shape.corner, size), max(outer - inner, LATTICE) / 2)
     return replace(shape, r=(inner, max(outer, inner + LATTICE)), corner=corner)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.outline.faults import Fault, FaultKind
 from beamopt.outline.ring import arc, circle, fine_sagitta, ring_polygon
+from beamopt.outline.smoothing import parts_of
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import PolarGrid, angle_between
@@ -43,15 +44,22 @@ def drawn_regions(shapes: Sequence[Shape], sagitta: float) -> tuple[Geometry, ..
     return tuple(drawn[supply] for supply in SUPPLIES)
 
 
-def _drawn_polygons(shapes: Sequence[Shape], sagitta: float) -> list[Polygon]:
+def _drawn_polygons(shapes: Sequence[Shape], sagitta: float) -> list[Geometry]:
     """Each shape as a polygon of its area, whatever covers it."""
-    return [
+    import shapely
+
+    polygons = [
         _circle(shape, sagitta) if isinstance(shape, Circle) else _piece(shape, sagitta)
         for shape in shapes
     ]
+    # the arcs of corners that only just fit may cross by a rounding
+    return [
+        polygon if polygon.is_valid else shapely.MultiPolygon(parts_of(shapely.make_valid(polygon)))
+        for polygon in polygons
+    ]
 
 
-def _hidden(polygons: Sequence[Polygon], sagitta: float) -> list[int]:
+def _hidden(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
     """Numbers of the polygons of which later ones leave nothing, ascending."""
     visible = set(_visible(polygons, sagitta))
     return [number for number in range(len(polygons)) if number not in visible]
@@ -87,7 +95,7 @@ def drawing_faults(
         beyond = _without(polygon, ring, sagitta)
         if not beyond.is_empty:
             cuts = shapely.get_parts(shapely.line_merge(ring.boundary.intersection(polygon)))
-            cut = max(cuts, key=shapely.length, default=polygon.exterior)
+            cut = max(cuts, key=shapely.length, default=polygon.boundary)
             place = _xy(cut.interpolate(0.5, normalized=True))
             faults.append(Fault(FaultKind.CUT, beyond.area, place, supplies, drawn=number))
         own = shapely.MultiPolygon(list(chambers[shape.supply - 1]))
@@ -100,7 +108,7 @@ def _xy(point: Geometry) -> tuple[float, float]:
     return float(point.x), float(point.y)
 
 
-def _visible(polygons: Sequence[Polygon], sagitta: float) -> list[int]:
+def _visible(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
     import shapely
 
     cover, found = shapely.Polygon(), []
@@ -119,9 +127,15 @@ def _without(geometry: Geometry, polygon: Geometry, sagitta: float) -> Geometry:
 
 
 def solid(geometry: Geometry, sagitta: float) -> Geometry:
-    """A geometry without slivers and spikes narrower than two sagittas [mm]."""
-    thick = geometry.buffer(-sagitta, join_style="mitre")
-    return geometry.intersection(thick.buffer(2 * sagitta, join_style="mitre"))
+    """A geometry's polygons without slivers and spikes narrower than two sagittas [mm]."""
+    import shapely
+
+    geometry = shapely.MultiPolygon(parts_of(geometry))  # not the lines where polygons touch
+    with np.errstate(invalid="ignore"):  # mitres of straight corners divide 0 by 0 in GEOS
+        thick = geometry.buffer(-sagitta, join_style="mitre").buffer(
+            2 * sagitta, join_style="mitre"
+        )
+    return geometry.intersection(thick)
 
 
 def _circle(shape: Circle, sagitta: float) -> Polygon:

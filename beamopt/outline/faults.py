@@ -108,7 +108,7 @@ class Fault:
     def _subject(self) -> str:
         numbers = " and ".join(str(supply) for supply in self.supplies)
         many = "supplies" if len(self.supplies) > 1 else "supply"
-        thickness = f"{self.value:.3f} mm" if self.value >= 0.01 else f"{self.value:.3g} mm"
+        thickness = _millimetres(self.value)
         drawn = "a drawn chamber" if self.drawn is None else f"drawing[{self.drawn}]"
         match self.status:
             case FaultKind.SKIN:
@@ -141,6 +141,10 @@ class Fault:
             case FaultKind.WALL_ELEMENTS:
                 said = "has no effect: a sealed section has its walls in mm (seal.wall)"
                 return f"wall_elements = {self.value:.0f} {said}"
+
+
+def _millimetres(length: float) -> str:
+    return f"{length:.3f} mm" if length >= 0.01 else f"{length:.3g} mm"
 
 
 def worst_first(faults: Iterable[Fault]) -> tuple[Fault, ...]:

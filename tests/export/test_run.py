@@ -212,7 +212,7 @@ def test_what_is_missing_is_named(
     assert f"needs {package}: pip install 'beamopt[{extra}]', or leave {form} out" in line
     assert list(here.iterdir()) == []
     assert run(["export", str(SEALED), "--out", "out"]) == 0  # what can be written is
-    said = capsys.readouterr().out.splitlines()
+    said = capsys.readouterr().err.splitlines()
     assert f"note: {form} is left out: needs {package}: pip install 'beamopt[{extra}]'" in said
     other = {"step": "ezdxf", "dxf": "gmsh"}[form]
     can = [one for one in FORMATS if one != form and (one in ("stl", "svg") or is_installed(other))]

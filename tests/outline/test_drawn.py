@@ -1,6 +1,7 @@
 """Drawn chambers as polygons against the rule by which they are rasterised."""
 
 from dataclasses import replace
+from itertools import zip_longest
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from hypothesis import strategies as st
 
 from beamopt.outline.build import build_outline
 from beamopt.outline.drawn import drawn_regions
+from beamopt.outline.faults import Fault, FaultKind
+from beamopt.outline.outline import Outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.cross_section import CrossSection
@@ -131,7 +134,9 @@ def test_a_hidden_piece_changes_nothing(
     np.testing.assert_array_equal(other_raster.labels, raster.labels)
     np.testing.assert_array_equal(other.moments.raw, outline.moments.raw)
     np.testing.assert_array_equal(other.smooth_moments.raw, outline.smooth_moments.raw)
-    assert other.faults == outline.faults
+    assert told(other) == told(outline)
+    number = next(k for k, (a, b) in enumerate(zip_longest(*drawings)) if a is not b)
+    assert number in {f.drawn for f in other.faults if f.status is FaultKind.HIDDEN}
     assert len(other.chambers) == len(outline.chambers)
     assert all(chamber.area > 1e-3 for chamber in other.chambers)
     if outline.moments.is_stiff:
@@ -140,6 +145,12 @@ def test_a_hidden_piece_changes_nothing(
             for moments in (outline.moments, other.moments)
         )
         np.testing.assert_array_equal(two, one)
+
+
+def told(outline: Outline) -> list[Fault]:
+    """Faults but for hidden chambers, whatever the others' numbers are."""
+    shown = [fault for fault in outline.faults if fault.status is not FaultKind.HIDDEN]
+    return [replace(fault, drawn=None) for fault in shown]
 
 
 def test_a_piece_half_hidden_leaves_no_sliver() -> None:
