@@ -139,8 +139,8 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "design cut": (cut("design.json"), r"design\.json"),
     "provenance": (replaced("provenance.json", '"machine"', '"engine"'), r"machine: must be given"),
     "table gone": (removed("table.csv"), r"table\.csv: no such file"),
-    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 20 cells|rows = )"),
-    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 19: must hold 20 cells"),
+    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 21 cells|rows = )"),
+    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 20: must hold 21 cells"),
     "row gone": (
         lambda folder: (folder / "table.csv").write_text(
             "".join((folder / "table.csv").read_text().splitlines(True)[:-1])
