@@ -66,7 +66,7 @@ def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refi
     write_refinement(folder, scene, target, found)
     numbers = {"scene": scene.name, "seed": scene.search.seed, **refinement_numbers(found, scene)}
     write_atomic(folder / "summary.json", json_text(numbers))
-    timing = [("refinement", found.seconds, "s")]
+    timing = [(name, seconds, "s") for name, seconds in found.times.items()]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
     write_atomic(folder / "provenance.json", json_text(provenance()))
 

@@ -178,17 +178,11 @@ class RunFolder:
         if stays:
             numbers, times = (self.path / name for name in ("summary.json", "timing.csv"))
             said = read_json(numbers).get("refinement") if numbers.exists() else None
-            taken = read_times(times)
-            return (
-                {} if said is None else {"refinement": said},
-                {"refinement": taken["refinement"]} if "refinement" in taken else {},
-            )
+            taken = {name: s for name, s in read_times(times).items() if name.startswith("refine")}
+            return {} if said is None else {"refinement": said}, taken
         if found is None:
             return {}, {}
-        return (
-            {"refinement": refinement_numbers(found, result.scene)},
-            {"refinement": found.seconds},
-        )
+        return {"refinement": refinement_numbers(found, result.scene)}, found.times
 
     def _write_search(self, result: Optimisation, figures: bool) -> bool:
         """What the search found; says whether anything is new."""

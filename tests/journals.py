@@ -1,8 +1,17 @@
 """Lines of journals, changed."""
 
+from collections.abc import Iterator
+
 from beamopt.line_journal import with_digest, without_digest
 
-__all__ = ["rewritten", "without_digests"]
+__all__ = ["flipped", "rewritten", "without_digests"]
+
+
+def flipped(content: bytes) -> Iterator[bytes]:
+    """The content with one digit changed into another, for every digit."""
+    for place, byte in enumerate(content):
+        if 48 <= byte < 58:
+            yield content[:place] + bytes([48 + (byte - 47) % 10]) + content[place + 1 :]
 
 
 def without_digests(journal: bytes) -> bytes:

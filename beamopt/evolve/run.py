@@ -12,6 +12,7 @@ from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
 from beamopt.evolve.improvement import Improvement
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason, why_stop
+from beamopt.evolve.variation import Variation
 from beamopt.judge import Judge, Status, judge_all
 from beamopt.scene import Scene
 from beamopt.timing import Timing
@@ -81,7 +82,7 @@ def run(
     if ready is not None:
         ready()
     before = search.evaluations
-    compiling = _compiling(judge, improvement, search) if reason is None else 0.0
+    compiling = _compiling(judge, improvement, scene, search) if reason is None else 0.0
     asking = time.perf_counter()
     try:
         while reason is None:
@@ -100,13 +101,16 @@ def run(
     return Ended(status, tuple(history), Timing(seconds, judged, compiling))
 
 
-def _compiling(judge: Judge, improvement: Improvement | None, search: GeneticAlgorithm) -> float:
+def _compiling(
+    judge: Judge, improvement: Improvement | None, scene: Scene, search: GeneticAlgorithm
+) -> float:
     """Run every kernel once, so that none is compiled while sections are timed; returns seconds."""
     started = time.perf_counter()
-    first = search.ask()[:1]
-    judge(first)
+    candidates = search.ask()[:1]
+    judge(candidates)
+    Variation(scene).warm_up()
     if improvement is not None:
-        improvement(first[0], 0, 0)
+        improvement(candidates[0], 0, 0)
     return time.perf_counter() - started
 
 

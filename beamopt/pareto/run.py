@@ -15,6 +15,7 @@ import numpy as np
 from beamopt.bound.certificate import quick_certificate
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
+from beamopt.evolve.variation import Variation
 from beamopt.file_lock import locked
 from beamopt.folder import claim_folder
 from beamopt.judge import in_parts
@@ -90,7 +91,7 @@ def find_front(
         _replay(search, journal, told)
         if folder is not None:
             begin_folder(folder, scene)
-        done, timing = _run(search, scene.search.generations, evaluate, journal, told)
+        done, timing = _run(search, scene, evaluate, journal, told)
         ended = StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
         front = Front(
             status=ended if done else StopReason.INTERRUPTED,
@@ -124,15 +125,16 @@ def _replay(search: FrontSearch, journal: FrontJournal | None, told: Told) -> No
 
 def _run(
     search: FrontSearch,
-    generations: int,
+    scene: Scene,
     evaluate: Callable[[Sequence[FeaturePoints]], list[Score]],
     journal: FrontJournal | None,
     told: Told,
 ) -> tuple[bool, Timing]:
     """Ask, judge and tell until all generations are done; says whether they are."""
-    before, compiling = search.evaluations, 0.0
+    before, compiling, generations = search.evaluations, 0.0, scene.search.generations
     started = time.perf_counter()
     if search.generation <= generations and search.ask():
+        Variation(scene).warm_up()
         evaluate(search.ask()[:1])  # every kernel once, so that none is compiled while it counts
         compiling = time.perf_counter() - started
     started, done = time.perf_counter(), False

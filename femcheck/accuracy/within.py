@@ -169,17 +169,21 @@ class _Asking:
         penalties = self._begun(levels[begin].model)
         within = self._ended(self.path[0][1], np.full_like(self.of_penalty, np.nan), reason)
         for level in levels[begin + 1 :]:
+            finer = replace(level.model, penalties=penalties)
             growth = (level.model.layers / self.path[-1][0]) ** DEARER
-            if self.tried[-1].seconds * growth > most_seconds:
+            if self.tried[-1].seconds * growth > most_seconds and not self._is_known(finer):
                 unsure = within.ending is Ending.NOT_REACHED
                 return replace(within, ending=Ending.TOO_DEAR) if unsure else within
-            fine = self._refined(replace(level.model, penalties=penalties))
+            fine = self._refined(finer)
             if len(self.path) <= pairs:
                 continue
             within = self._ended(fine, self._estimate(), reason, Source.COARSER)
             if within.ending is Ending.REACHED or level is levels[-1]:
                 return within
         raise AssertionError("the last level ends it")
+
+    def _is_known(self, model: Model) -> bool:
+        return self.kept is not None and self.kept.find(model) is not None
 
     def _first(self, levels: Sequence[Level], scale: float) -> int:
         """The first level that charts promise the accuracy of."""

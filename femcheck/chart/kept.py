@@ -78,10 +78,13 @@ def read_chart(folder: Path) -> Chart:
     file = folder / JOURNAL
     try:
         journal = LineJournal(file, None, KIND)
+    except OSError:
+        raise InputError(file, "", None, "no journal of a chart") from None
+    try:
         if journal.asked["schema"] != SCHEMA:
             raise ValueError
         question = _question(journal.asked, file)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError):
         raise InputError(file, "", None, "no journal of a chart") from None
     return chart_of(question, measured_in(journal))
 

@@ -30,6 +30,7 @@ from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 from tests.clocks import run_away
+from tests.journals import flipped
 from tests.rod.samples import PLANE, plain_law
 from tests.validation.resume import everything
 
@@ -228,6 +229,15 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
     assert came == [0, 1, 7]
     assert without_seconds(there / "stability.csv") == without_seconds(folder / "stability.csv")
     assert not (there / JOURNAL).exists()
+
+
+def test_every_changed_digit_is_noticed(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
+    path, asked = tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)}
+    Journal(path, asked).add(made[1][0])
+    for damaged in flipped(path.read_bytes()):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"line [12]"):
+            Journal(path, asked)
 
 
 def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:

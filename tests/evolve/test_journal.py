@@ -3,7 +3,6 @@ import os
 import re
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,7 @@ from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.evolve.journal import Journal
 from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
-from tests.journals import rewritten, without_digests
+from tests.journals import flipped, rewritten, without_digests
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=4"])
 
@@ -86,13 +85,6 @@ def test_a_changed_line_is_named(number: int, change: tuple[bytes, bytes], whole
         number = 2  # lines of that version have no digests
     with pytest.raises(InputError, match=f"line {number}"):
         resumed(changed, tmp_path / "run")
-
-
-def flipped(line: bytes) -> Iterator[bytes]:
-    """The line with one digit changed into another, for every digit."""
-    for place, byte in enumerate(line):
-        if 48 <= byte < 58:
-            yield line[:place] + bytes([48 + (byte - 47) % 10]) + line[place + 1 :]
 
 
 def test_every_changed_digit_is_noticed(whole: bytes, tmp_path: Path) -> None:

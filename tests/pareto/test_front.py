@@ -18,11 +18,12 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Judge
 from beamopt.pareto.front import Front
+from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.run import find_front
 from beamopt.pareto.scores import nondominated, scored
 from beamopt.pareto.search import FrontRecord, FrontSearch, front_values
 from beamopt.scene import Scene, load_scene
-from tests.journals import rewritten
+from tests.journals import flipped, rewritten
 from tests.validation.resume import content, everything
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=6"])
@@ -167,6 +168,17 @@ def test_it_can_be_given_more_generations(whole: Path, tmp_path: Path) -> None:
     find_front(short, ("L", "mass"), tmp_path / "front", population=SMALL)
     find_front(SCENE, ("L", "mass"), tmp_path / "front", population=SMALL, resume=True)
     assert content(tmp_path / "front") == content(whole)
+
+
+def test_every_changed_digit_is_noticed(whole: Path, tmp_path: Path) -> None:
+    path, about = tmp_path / "journal.jsonl", (SCENE, ("L", "mass"), SMALL)
+    content = b"".join((whole / "journal.jsonl").read_bytes().splitlines(keepends=True)[:2])
+    for damaged in flipped(content):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"journal\.jsonl: line [12]"):
+            FrontJournal(path, *about)
+    path.write_bytes(content)
+    assert FrontJournal(path, *about).last_generation == 0
 
 
 def test_a_front_never_goes_backwards(whole: Path, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ import pytest
 from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.line_journal import with_digest
 from beamopt.study.pool import in_process
 from femcheck.chart import lineup, run
 from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
@@ -33,6 +34,7 @@ from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
 from tests.femcheck.check.small import SIZES
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of
+from tests.journals import flipped
 
 SOLIDS = ("wedge18", "hex27")
 FILES = {
@@ -343,12 +345,27 @@ def test_another_question_is_refused(tmp_path: Path) -> None:
 )
 def test_a_damaged_journal_is_one_line(tmp_path: Path, damage: bytes) -> None:
     charted(question_of(NEO), tmp_path / "c", made(), families=["hex27"])
-    with (tmp_path / "c" / JOURNAL).open("ab") as stream:
-        stream.write(damage)
-    with pytest.raises(InputError, match="no journal of a chart"):
-        charted(question_of(NEO), tmp_path / "c", made(), resume=True)
-    with pytest.raises(InputError, match="no journal of a chart"):
-        read_chart(tmp_path / "c")
+    path = tmp_path / "c" / JOURNAL
+    whole = path.read_bytes()
+    written = with_digest(damage.decode("latin-1").rstrip("\n")).encode("latin-1") + b"\n"
+    for line in (damage, written):  # changed afterwards, or by a program that is not ours
+        path.write_bytes(whole + line)
+        said = f"line {whole.count(10) + 1}: no journal of a chart"
+        with pytest.raises(InputError, match=said):
+            charted(question_of(NEO), tmp_path / "c", made(), resume=True)
+        with pytest.raises(InputError, match=said):
+            read_chart(tmp_path / "c")
+
+
+def test_every_changed_digit_is_noticed(tmp_path: Path) -> None:
+    """Those of the design in the first line are among them."""
+    charted(question_of(NEO), tmp_path / "c", made(), families=["hex27"])
+    path = tmp_path / "c" / JOURNAL
+    first_two = b"".join(path.read_bytes().splitlines(keepends=True)[:2])
+    for damaged in flipped(first_two):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"line [12]: no journal of a chart"):
+            read_chart(tmp_path / "c")
 
 
 @pytest.mark.parametrize("head", [b"", b"{}\n", b"[]\n", b"\xff\n", b'{"schema": "other/1"}\n'])

@@ -22,6 +22,7 @@ from tests.femcheck.stability.small import (
     told_cell,
     told_row,
 )
+from tests.journals import flipped
 
 pytestmark = pytest.mark.usefixtures("told")
 
@@ -200,5 +201,10 @@ def test_a_line_says_all_there_is_to_know(tmp_path: Path) -> None:
     journal = Journal(tmp_path / "journal.jsonl", axes)
     for key, result in results.items():
         journal.add(axis, key, result)
-    read = Journal(tmp_path / "journal.jsonl", axes).results
+    path = tmp_path / "journal.jsonl"
+    read = Journal(path, axes).results
     assert repr(read) == repr(results)  # not a number is not equal to itself
+    for damaged in flipped(path.read_bytes()):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"journal\.jsonl: line [1-4]"):
+            Journal(path, axes)
