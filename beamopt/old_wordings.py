@@ -1,4 +1,4 @@
-"""Texts that files of version 0 held where a status belongs; for reading those files only.
+"""Texts that files of earlier versions held where a status belongs; for reading those files only.
 
 They are fixed: nothing that is written today has them, and rewording a status changes none of them.
 """

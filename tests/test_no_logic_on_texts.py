@@ -35,6 +35,7 @@ OF_PEOPLE = {
     "beamopt/cli/bound.py": "text",  # an option as it was given
     "beamopt/cli/endings.py": "text",  # put on one line, whatever it says
     "beamopt/cli/tips.py": "text",
+    "beamopt/files.py": "text",  # a cell of a table, defused
     "beamopt/overrides.py": "text",
     "beamopt/pareto/scores.py": "text",
     "beamopt/scene_text.py": "text",

@@ -3,6 +3,7 @@
 import csv
 import importlib
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
@@ -13,11 +14,16 @@ import numpy as np
 import pytest
 
 from beamopt.chart.cases import Kind as LoadKind
+from beamopt.chart.cases import case_of
+from beamopt.chart.journal import Journal as RodJournal
+from beamopt.chart.sampling import Row, Sample
+from beamopt.chart.verdict import Verdict, Witness
 from beamopt.cli.refine import _check_ended
 from beamopt.errors import InputError
 from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.rod.ladder import Rung
+from beamopt.rod.status import RodStatus
 from beamopt.scene import load_scene
 from femcheck.accuracy.run import run_accuracy
 from femcheck.chart.kept import read_chart
@@ -48,6 +54,7 @@ from tests.test_architecture import MODULES, ROOT, name_of
 
 KEYS = {Wound, Rung, LoadKind, FolderKind}
 """Enums whose values are no texts for people but words of options and scenes."""
+CUT_SHORT = {Status.TIME_OUT, Status.STOPPED, Status.WORK_LIMIT}
 REPORTS = ROOT / "reports"
 SOME = ["search.generations=1", "search.population=4"]
 
@@ -135,7 +142,7 @@ def test_a_chart_that_goes_on_asks_again_for_what_was_interrupted(status: Status
     line = json.loads(json.dumps(written(Measured("a", "b", reply, 1.0))))
     with reworded():
         again = read(line)
-        assert is_final(again) == (status not in (Status.TIME_OUT, Status.STOPPED))
+        assert is_final(again) == (status not in CUT_SHORT)
     assert again.reply.endings == reply.endings
     old = {text for text, key in OLD_STATUSES.items() if key == Ended(status).key}
     for text in old:
@@ -240,9 +247,28 @@ def test_a_search_goes_on_in_the_same_bytes(tmp_path: Path) -> None:
     assert (tmp_path / "a" / "best.json").read_bytes() == best
 
 
+@pytest.mark.parametrize("witness", Witness)
+def test_the_map_of_rods_is_read(witness: Witness, tmp_path: Path) -> None:
+    """Also by another wording than it was written with, and as earlier versions wrote it."""
+    asked = {"seed": 0}
+    rows = (Row(case_of(0, 0), "modes", 4, Verdict.RIGHT, RodStatus.BUCKLED, 0.5, 1.0),)
+    sample = Sample(case_of(0, 0), witness, RodStatus.CONVERGED, 0.25, rows, 2.0)
+    RodJournal(tmp_path / "a", asked).add(sample)
+    with reworded():
+        (again,) = RodJournal(tmp_path / "a", asked).samples.values()
+        RodJournal(tmp_path / "b", asked).add(sample)
+    assert (again.witness, again.truth) == (witness, RodStatus.CONVERGED)
+    assert (again.rows[0].verdict, again.rows[0].status) == (Verdict.RIGHT, RodStatus.BUCKLED)
+    whole = (tmp_path / "a").read_text()
+    assert (tmp_path / "b").read_text() == whole
+    old = re.sub(r',"digest":"\w+"', "", whole.replace(witness.name, witness.name.lower()))
+    (tmp_path / "a").write_text(old)
+    assert RodJournal(tmp_path / "a", asked).samples[0].witness is witness
+
+
 @pytest.mark.parametrize("text", OLD_STOP_REASONS)
 def test_only_a_search_that_ended_is_refined(text: str, tmp_path: Path) -> None:
-    """By the name in its summary, or the text in one of version 0."""
+    """By the name in its summary, or the text in an earlier one."""
     name = OLD_STOP_REASONS[text]
     summaries: list[dict[str, Any]] = [{"status": text}, {"status": "reworded", "ended": name}]
     for summary in summaries:

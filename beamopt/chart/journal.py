@@ -63,6 +63,6 @@ def _sample(seed: int, data: dict[str, Any]) -> Sample:
         Row(case, method, resolution, Verdict[verdict], RodStatus[status], distance, seconds)
         for method, resolution, verdict, status, distance, seconds in data["rows"]
     )
-    # version 0 wrote names in small letters
+    # earlier versions wrote names in small letters
     witness, truth = Witness[data["witness"].upper()], RodStatus[data["truth"]]
     return Sample(case, witness, truth, data["gap"], rows, data["seconds"])

@@ -127,7 +127,8 @@ def refine(
     if not better:
         same = symmetry is None or _are_one(start, points)
         status = RefineStatus.UNCHANGED if same else RefineStatus.SYMMETRISED
-    return _refined(status, before, best if better else before, tuple(work.stages), work.flips)
+        best = replace(before, points=points) if same else before
+    return _refined(status, before, best, tuple(work.stages), work.flips)
 
 
 def _are_one(one: FeaturePoints, other: FeaturePoints) -> bool:

@@ -42,7 +42,7 @@ def _reason(key: str) -> str:
 
 
 Reason = Annotated[str, AfterValidator(_reason)]
-"""The key of an ending; in files of version 0 its text."""
+"""The key of an ending; in earlier files its text."""
 
 
 class Entry(Model):

@@ -194,7 +194,7 @@ def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinatio
 
 
 def _endings(table: Table) -> tuple[Ended | None, ...]:
-    """Of the column "ended"; a table of version 0 has texts alone."""
+    """Of the column "ended"; an earlier table has texts alone."""
     if "ended" not in table.header:
         return tuple(map(_of_text, table.column("status")))
     endings = []

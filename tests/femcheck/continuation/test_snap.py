@@ -22,9 +22,13 @@ Script = Sequence[PathPoint | Failed | Exhausted]
 
 
 class Scripted:
-    """Gives one thing after the other, whatever is asked for; finds every stop that is asked at."""
+    """Gives one thing after the other, whatever is asked for; finds every stop that is asked at.
 
-    def __init__(self, script: Script, slope: float = 0.5) -> None:
+    most : volume up to which the law describes the body.
+    """
+
+    def __init__(self, script: Script, slope: float = 0.5, most: float = np.inf) -> None:
+        self._most = most
         self._script = iter(script)
         self._slope = Slope(np.array([1.0 - slope, slope]), np.zeros(1))
         self.scale = np.array([100.0, 100.0])
@@ -45,12 +49,15 @@ class Scripted:
             raise given
         return given, self._slope, length
 
+    def share_of_law(self, point: PathPoint) -> float:
+        return point.volume / self._most
+
     def at(self, load: float, near: PathPoint) -> PathPoint | None:
         return point(load, near.volume)
 
 
-def trace(script: Script, stops: list[float], slope: float = 0.5) -> Any:
-    stepper: Any = Scripted(script, slope)
+def trace(script: Script, stops: list[float], slope: float = 0.5, most: float = np.inf) -> Any:
+    stepper: Any = Scripted(script, slope, most)
     done = _Trace(PathSteps(), stepper, stops, None)
     return done, done.follow()
 
@@ -84,6 +91,39 @@ def test_growth_is_that_of_the_last_end_and_not_of_a_snap() -> None:
     done, (status, critical) = trace(script, [50.0, 100.0], slope=0.06)
     assert (status, critical) == (Status.BUCKLED, 60.0)
     assert done.grown(done.volume) == pytest.approx(1.8)
+
+
+def test_a_snap_to_what_no_law_describes_is_none() -> None:
+    """The path ends at its limit point, though it is stable again beyond the law."""
+    script = [point(49.0, 130.0, 5.0), point(47.0, 140.0, -5.0, 1), point(55.0, 150.0)]
+    done, (status, critical) = trace(script, [50.0, 100.0], most=145.0)
+    assert status is Status.LIMIT_POINT
+    assert 49.0 <= critical < 50.0
+    assert done.found == [None, None]
+    assert done.snaps == []
+
+
+def test_the_load_at_which_a_law_is_left_is_closed_in() -> None:
+    """Halved until the loads differ by a hundredth, then in a straight line; no stop is beyond."""
+    script = [
+        *(point(40.0, 120.0), point(60.0, 170.0)),
+        *(point(50.0, 145.0), point(55.0, 155.0), point(52.5, 150.5), point(52.0, 149.5)),
+    ]
+    done, (status, critical) = trace(script, [60.0], most=150.0)
+    assert status is Status.BEYOND_LAW
+    assert critical == pytest.approx(52.25)
+    assert done.points[-1].load == 52.0
+    assert done.found == [None]
+    assert done.grown(done.volume) == pytest.approx(1 + 0.5)
+
+
+def test_stability_that_is_lost_before_the_law_ends_counts() -> None:
+    """Between two points the path turned, and only then left what the law describes."""
+    fallen = [point(load, volume, -5.0, 1) for load, volume in ((40, 170), (48, 145), (39, 180))]
+    script = [point(49.0, 130.0, 5.0), *fallen]
+    _, (status, critical) = trace(script, [60.0], most=150.0)
+    assert status is Status.LIMIT_POINT
+    assert critical >= 49.0
 
 
 def test_a_path_that_stays_lost_ends_at_its_limit() -> None:

@@ -47,8 +47,7 @@ def test_rays_end_there(left: tuple[Prediction, Path]) -> None:
     assert found.beyond_law > 0
     assert not found.holds
     assert found.not_computed == 0
-    ends = [one.critical for (mesh, _), one in found.results.items() if mesh == "standard"]
-    assert found.stable_box == min(ends)
+    assert found.stable_box == min(result.critical for result in gone)
 
 
 def test_tables_and_page_say_so(left: tuple[Prediction, Path]) -> None:
@@ -76,8 +75,8 @@ def test_what_is_said() -> None:
     assert "1 of 26 combinations has no answer that is known" in said
     assert "exist" not in said
     assert way_out is not None
-    assert way_out.startswith("stay below 27.2 kPa")
-    assert "law" in way_out
+    assert way_out.startswith("stay below 18.1 kPa")  # with the margin of every advice
+    assert "take a law that was fitted to larger stretches" in way_out
     assert "--resume" not in way_out
     assert found.stable_box == 27.24
     both = faked({ALIKE: (Status.BEYOND_LAW, 27.24), ONE: (Status.LIMIT_POINT, 31.0)}, **changes)

@@ -15,6 +15,7 @@ from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
 from femcheck.report.solid_run import read_solid_run
+from femcheck.report.wording import badge_of
 from tests.femcheck.report.folders import change_json, copied, figure_folder
 
 
@@ -45,6 +46,24 @@ def test_a_prediction_is_read(predicted: Path) -> None:
     assert ended is not None
     assert ended.status.is_physical
     assert found.ending(row) == str(replace(ended, load=found.ends_at[row]))
+
+
+def test_a_verdict_that_is_not_certain_has_a_badge_that_says_so(
+    checked: Path, predicted: Path, tmp_path: Path
+) -> None:
+    """Meshes of two layers and of one do not agree on limits. An old folder does not say."""
+    run = read_solid_run(predicted)
+    assert not run.is_certain
+    assert run.summary.number("meshes.largest_ratio") > 1.1
+    sure = read_solid_run(checked)
+    assert sure.is_certain
+    folder = copied(checked, tmp_path / "unsure")
+    change_json(folder / "summary.json", lambda data: data["verdict"].update(certain=False))
+    unsure = read_solid_run(folder)
+    assert not unsure.is_certain
+    assert badge_of(unsure).text == f"{badge_of(sure).text}, uncertain"
+    change_json(folder / "summary.json", lambda data: data["verdict"].pop("certain"))
+    assert read_solid_run(folder).is_certain
 
 
 def test_text_that_was_defused_is_shown_as_it_was(tmp_path: Path) -> None:
@@ -120,8 +139,8 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "design cut": (cut("design.json"), r"design\.json"),
     "provenance": (replaced("provenance.json", '"machine"', '"engine"'), r"machine: must be given"),
     "table gone": (removed("table.csv"), r"table\.csv: no such file"),
-    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 20 cells|rows = )"),
-    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 19: must hold 20 cells"),
+    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 21 cells|rows = )"),
+    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 20: must hold 21 cells"),
     "row gone": (
         lambda folder: (folder / "table.csv").write_text(
             "".join((folder / "table.csv").read_text().splitlines(True)[:-1])
