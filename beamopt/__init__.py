@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from beamopt.evolve.stopping import StopReason
     from beamopt.judge import Judge, Status, Verdict
     from beamopt.optimisation import optimize
+    from beamopt.outline.faults import Fault, FaultKind, Severity
     from beamopt.pareto.front import Front
     from beamopt.pareto.run import find_front
     from beamopt.plot.figures import design_figure
@@ -49,6 +50,7 @@ _HOMES = {
     "beamopt.evolve.stopping": ("StopReason",),
     "beamopt.judge": ("Judge", "Status", "Verdict"),
     "beamopt.optimisation": ("optimize",),
+    "beamopt.outline.faults": ("Fault", "FaultKind", "Severity"),
     "beamopt.pareto.front": ("Front",),
     "beamopt.pareto.run": ("find_front",),
     "beamopt.plot.figures": ("design_figure",),
@@ -70,6 +72,8 @@ __all__ = [
     "Certificate",
     "CrossSection",
     "Design",
+    "Fault",
+    "FaultKind",
     "FeaturePoints",
     "Front",
     "Generation",
@@ -84,6 +88,7 @@ __all__ = [
     "Response",
     "Scene",
     "SealRules",
+    "Severity",
     "Status",
     "StopReason",
     "Target",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from functools import partial
@@ -36,7 +37,7 @@ def _incompressible(given: dict[str, Any]) -> float:
 class Actuator(Model):
     """The extruded body and its material; without a shear modulus it has G = E/3."""
 
-    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=5, high=5000)
+    length: Number = quantity(100.0, "undeformed length H", unit="mm", low=0.1, high=1e5)
     youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
     shear_modulus: Number = Field(
         default_factory=_incompressible,
@@ -61,6 +62,10 @@ class SegmentChoice(Model):
     def _has_one_section(self) -> SegmentChoice:
         if self.file is not None and self.section is not None:
             raise ValueError("either file or section")
+        try:
+            json.dumps(self.section, ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise ValueError("section: text with half a surrogate pair") from None
         return self
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -47,8 +48,16 @@ def claim_bound_folder(folder: Path, scene: Scene) -> None:
         raise InputError(there, "scene", kept, said)
 
 
-def write_bound(folder: Path, scene: Scene, target: Target, found: Certificate) -> None:
+def write_bound(
+    folder: Path,
+    scene: Scene,
+    target: Target,
+    found: Certificate,
+    assumed: Mapping[str, Any] | None = None,
+) -> None:
     """Write what was found to a folder that is taken; each file whole or not at all.
+
+    assumed : what the question did not say, by the names under which `bound.json` has it.
 
     Without a bound there are only `bound.json`, which says why, and the provenance; what an earlier
     one left is removed.
@@ -64,7 +73,7 @@ def write_bound(folder: Path, scene: Scene, target: Target, found: Certificate) 
     timing = [(part, seconds, "s") for part, seconds in found.seconds.items()]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
     write_atomic(folder / "provenance.json", json_text(provenance()))
-    numbers = {"scene": scene.name, **bound_numbers(found)}
+    numbers = {"scene": scene.name, **(assumed or {}), **bound_numbers(found)}
     write_atomic(folder / MARKER, json_text(numbers))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -18,6 +18,7 @@ from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
 from beamopt.grid_keys import Grid, Levels, WallElements
 from beamopt.model import Model, parse, quantity, read_json
+from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import RodModel, SectionValues, Tips
@@ -55,7 +56,7 @@ class Design(Model):
     feature_points: Points | None = quantity(None, "x, y, type of every feature point")
     drawing: list[DrawnChamber] | None = quantity(None, "a list of drawn chambers")
     wall_elements: WallElements = quantity(
-        ..., "elements of a wall between supplies, even", low=0, high=64
+        ..., "elements of a wall between supplies, even; none if sealed", low=0, high=64
     )
     seal: Seal = quantity(..., "skin, wall, islands; also rounding, smallest_chamber")
     actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
@@ -69,7 +70,20 @@ class Design(Model):
         if (self.feature_points is None) == (self.drawing is None):
             raise ValueError("exactly one of feature_points and drawing must be given")
         self.seal.check_fits(self.grid.build())
+        self._check_drawing()
         return self
+
+    def _check_drawing(self) -> None:
+        from beamopt.outline.drawn import outside
+
+        if not self.drawing:
+            return
+        grid = self.grid
+        for number in outside([chamber.build() for chamber in self.drawing], grid.build()):
+            within = f"within radii {grid.inner_radius:g} and {grid.outer_radius:g} mm"
+            sector = "" if grid.build().is_full_ring else f", {grid.start:g}…{grid.stop:g}°"
+            allowed = f"lies outside the section: must have an area {within}{sector}"
+            raise InputError("", f"drawing[{number}]", None, allowed)
 
     @classmethod
     def of_points(
@@ -116,6 +130,32 @@ class Design(Model):
         from beamopt.outline.build import build_outline
 
         return build_outline(self.grid.build(), self.source, self.seal.rules)
+
+    @cached_property
+    def findings(self) -> tuple[Fault, ...]:
+        """What is wrong with its section, and what of the file has no effect, the worst first.
+
+        Every command says these; sealed or not, skins, walls and openings are the outline's.
+        """
+        return self.findings_on(self.outline)
+
+    def findings_on(self, outline: Outline) -> tuple[Fault, ...]:
+        """The same on an outline of this design with other edges."""
+        found = [*outline.faults, *self._not_in_the_raster()]
+        if self.seal.rules.sealed and self.wall_elements:
+            found.append(Fault(FaultKind.WALL_ELEMENTS, float(self.wall_elements)))
+        return worst_first(found)
+
+    def _not_in_the_raster(self) -> Iterator[Fault]:
+        """Drawn chambers too small for the elements that an unsealed section is made of."""
+        if self.drawing is None or self.seal.rules.sealed:
+            return
+        nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
+        told = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
+        labels, (x, y) = self.section.labels, self.section.grid.centroids
+        for number, shape in enumerate(chamber.build() for chamber in self.drawing):
+            if number not in told and not (labels[shape.covers(x, y)] == shape.supply).any():
+                yield Fault(FaultKind.LOST, supplies=(shape.supply,), drawn=number)
 
     @cached_property
     def moments(self) -> Moments:

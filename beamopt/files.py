@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import csv
 import errno
-import io
 import json
 import os
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-__all__ = ["csv_text", "json_text", "write_atomic"]
+__all__ = ["cell_text", "csv_text", "json_text", "write_atomic", "write_changed"]
+
+FORMULA = re.compile(r"'*[=+\-@\t\r]")  # also behind apostrophes: one more tells them apart
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+LINE_END = "\r\n"
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -34,12 +38,48 @@ def write_atomic(path: Path, content: str | bytes) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def write_changed(path: Path, content: str | bytes) -> bool:
+    """Write a file as `write_atomic` does, unless it holds just that; says whether it wrote.
+
+    Raises
+    ------
+    OSError : the folder is missing or can not be written.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    if path.is_file() and path.read_bytes() == data:
+        return False
+    write_atomic(path, data)
+    return True
+
+
 def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:
-    """A comma-separated table; floats with all their digits, empty cells for None."""
-    stream = io.StringIO()
-    stream.write(header + "\n")
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue()
+    """A comma-separated table; floats with all their digits, empty cells for None.
+
+    Text that a spreadsheet would run as a formula gets an apostrophe in front; `cell_text` takes
+    it off again.
+    """
+    lines = _Lines([header])
+    cells = ([_defused(cell) if isinstance(cell, str) else cell for cell in row] for row in rows)
+    csv.writer(lines, lineterminator=LINE_END).writerows(cells)
+    return "\n".join([*lines, ""])
+
+
+class _Lines(list[str]):
+    """What a csv writer writes, a row each; it quotes cells that hold a part of `LINE_END`."""
+
+    def write(self, line: str) -> None:
+        """Take a row."""
+        self.append(line.removesuffix(LINE_END))
+
+
+def _defused(text: str) -> str:
+    harmless = not FORMULA.match(text) or NUMBER.fullmatch(text)
+    return text if harmless else "'" + text
+
+
+def cell_text(cell: str) -> str:
+    """The text that `csv_text` was given for a cell."""
+    return cell[1:] if cell.startswith("'") and FORMULA.match(cell) else cell
 
 
 def json_text(value: object, *, escaped: bool = True) -> str:

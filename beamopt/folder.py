@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import Any
 
 from beamopt.errors import InputError
 
-__all__ = ["claim_folder", "clear_leftovers", "design_file"]
+__all__ = ["claim_folder", "clear_leftovers", "design_file", "differences"]
 
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
 
@@ -55,3 +56,19 @@ def design_file(path: Path) -> Path:
         return path
     refined = path / "refined.json"
     return refined if refined.exists() else path / "best.json"
+
+
+def differences(
+    before: Any, now: Any, free: Collection[str] = (), key: str = ""
+) -> Iterator[tuple[str, Any, Any]]:
+    """Keys of nested tables whose values differ, as "table.key", with both values.
+
+    free : keys, or whole tables, that may differ.
+    """
+    if isinstance(before, dict) and isinstance(now, dict):
+        for name in before | now:
+            inner = f"{key}.{name}" if key else name
+            if inner not in free:
+                yield from differences(before.get(name), now.get(name), free, inner)
+    elif before != now:
+        yield key, before, now

@@ -1,56 +1,134 @@
-"""Results on disk as they come, a line each: a kill loses those under way only."""
+"""Results on disk as they come, a line each: a kill loses those under way only.
+
+Every line ends with a digest of the rest of it, so that a line that was damaged or changed is
+told from one that was written. Journals of earlier versions have none; they are read, and gone on
+with, without.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from beamopt.errors import InputError
+from beamopt.folder import differences
 
-__all__ = ["LineJournal"]
+__all__ = ["LineJournal", "with_digest", "without_digest"]
+
+T = TypeVar("T")
+
+LONG = 60  # letters of a value that is not shown
+SEALED = re.compile(r'(\{.+),"digest":"([0-9a-f]{16})"\}', re.DOTALL)
+
+
+def with_digest(text: str) -> str:
+    """The text of a JSON object, which is not empty, with a digest of it as its last member."""
+    return f'{text[:-1]},"digest":"{_digest(text)}"}}'
+
+
+def without_digest(line: str) -> str | None:
+    """The text that `with_digest` was given; None for a line without a digest.
+
+    Raises
+    ------
+    ValueError : the digest is of another text.
+    """
+    found = SEALED.fullmatch(line)
+    if found is None:
+        return None
+    text = found[1] + "}"
+    if _digest(text) != found[2]:
+        raise ValueError("the digest is of another text")
+    return text
+
+
+def _digest(text: str) -> str:
+    return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 class LineJournal:
     """A file whose first line says what was asked, and whose others are results.
 
     path : of the file. asked : what the results depend on; that of a file that is there must be
-    the same. kind : what it is a journal of, for people.
+    the same; None takes what the file says. kind : what it is a journal of, for people.
 
     Raises
     ------
-    InputError : the file that is there is another one's, or is damaged.
+    InputError : the file that is there is another one's, or is damaged; names the line.
     """
 
-    def __init__(self, path: Path, asked: dict[str, Any], kind: str) -> None:
+    def __init__(self, path: Path, asked: dict[str, Any] | None, kind: str) -> None:
         self.path = path
         self.kind = kind
         self.entries: list[dict[str, Any]] = []
+        self.digests = True
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         whole = [line for line in lines if line.endswith(b"\n")]
         if not whole:
-            path.write_text(json.dumps(asked) + "\n", encoding="utf-8")
+            if asked is None:
+                raise self.damaged(1)
+            self.asked = asked
+            path.write_text(with_digest(json.dumps(asked)) + "\n", encoding="utf-8")
             return
-        try:
-            head, *entries = (json.loads(line) for line in whole)
-        except ValueError:
-            raise self.damaged() from None
-        if head != json.loads(json.dumps(asked)):
-            said = f"the {kind} there is of another question; name another folder, or ask alike"
-            raise InputError(path, "", None, said)
-        if not all(isinstance(entry, dict) for entry in entries):
-            raise self.damaged()
-        self.entries = entries
+        self.digests = SEALED.fullmatch(whole[0][:-1].decode(errors="replace")) is not None
+        self.asked = self._object(1, whole[0])
+        if asked is not None and self.asked != json.loads(json.dumps(asked)):
+            raise self._other(asked)
+        self.entries = [self._object(number, line) for number, line in enumerate(whole[1:], 2)]
         if len(whole) < len(lines):  # a kill left half a line
             with path.open("r+b") as stream:
                 stream.truncate(sum(map(len, whole)))
 
-    def damaged(self) -> InputError:
-        """What to raise where an entry can not be read."""
-        return InputError(self.path, "", None, f"no journal of a {self.kind}")
+    def _object(self, number: int, line: bytes) -> dict[str, Any]:
+        """The object in a line, checked against its digest."""
+        try:
+            text = line[:-1].decode()
+            checked = without_digest(text)
+            found = json.loads(text if checked is None else checked)
+        except (ValueError, RecursionError):
+            raise self.damaged(number) from None
+        if not isinstance(found, dict) or (checked is not None) != self.digests:
+            raise self.damaged(number)
+        if "digest" in found:  # of a line whose digest can not be read
+            raise self.damaged(number)
+        return found
+
+    def _other(self, asked: dict[str, Any]) -> InputError:
+        key, before, now = next(differences(self.asked, json.loads(json.dumps(asked))))
+        shown = f"; now asked for: {now}" if len(str(now)) < LONG else ""
+        said = f"the {self.kind} there is of another question{shown}"
+        return InputError(self.path, key, before, f"{said}; name another folder, or ask alike")
+
+    def damaged(self, number: int) -> InputError:
+        """What to raise where line `number`, from 1, can not be read."""
+        said = (
+            f"no journal of a {self.kind}: the line is damaged or was changed; "
+            "cut the file off before it to compute it, and what follows, again"
+        )
+        return InputError(self.path, f"line {number}", None, said)
+
+    def read(self, convert: Callable[[dict[str, Any]], T]) -> list[T]:
+        """Every entry as what `convert` makes of it.
+
+        Raises
+        ------
+        InputError : an entry that it can not convert, by its line.
+        """
+        found = []
+        for number, entry in enumerate(self.entries, 2):
+            try:
+                found.append(convert(entry))
+            except (ValueError, KeyError, TypeError, AttributeError):
+                raise self.damaged(number) from None
+        return found
 
     def add(self, entry: dict[str, Any]) -> None:
         """Keep a result."""
         self.entries.append(entry)
+        text = json.dumps(entry)
         with self.path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps(entry) + "\n")
+            stream.write((with_digest(text) if self.digests else text) + "\n")

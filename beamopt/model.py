@@ -140,8 +140,11 @@ def _explained(error: ValidationError, model: type[BaseModel], where: object) ->
         return InputError(where, path, None, f"must be given: {_described(field)}")
     if kind == "value_error":
         whole = isinstance(value, Mapping | list | tuple)
-        said = str(first["ctx"]["error"])
-        return InputError(where, path, None if whole else value, said)
+        cause = first["ctx"]["error"]
+        if isinstance(cause, InputError):  # a check of several keys that knows which one it is
+            key = ".".join(part for part in (path, cause.key) if part)
+            return InputError(where, key, cause.value, cause.allowed)
+        return InputError(where, path, None if whole else value, str(cause))
     said = PLAIN.get(kind, said[0].lower() + said[1:])
     limits = allowed(field) if field is not None else ""
     in_a_list = path.endswith("]")

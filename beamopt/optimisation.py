@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from beamopt.design import Design
@@ -54,7 +55,7 @@ def optimize(
     folder = None if out is None else RunFolder.open(Path(out), resume=resume)
     with nullcontext() if folder is None else Journal(folder.journal) as journal:
         if folder is not None:
-            folder.begin(scene, target)
+            folder.check(scene)
         ended = run(
             scene,
             scene.judge(target),
@@ -62,11 +63,17 @@ def optimize(
             executor=executor,
             workers=workers,
             callback=callback,
+            ready=None if folder is None else partial(folder.begin, scene, target),
         )
         result = _refined(_result(scene, target, ended), refining)
-        if folder is not None:
-            folder.write_result(result, figures=figures)
+        if folder is not None and not (_only_refining_was_cut(ended, result) and folder.has_result):
+            result = replace(result, there=folder.write_result(result, figures=figures))
     return result
+
+
+def _only_refining_was_cut(ended: Ended, result: Optimisation) -> bool:
+    """Whether the search had ended before, and refining it now was interrupted."""
+    return ended.timing.judged == 0 and result.status is not ended.status
 
 
 def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | None) -> Optimisation:
@@ -85,7 +92,7 @@ def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | Non
 def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
     last = ended.history[-1]
     best, final = (_design(scene, one) for one in (last.best_ever, last.best))
-    return Optimisation(ended.status, scene, target, best, final, ended.history, ended.seconds)
+    return Optimisation(ended.status, scene, target, best, final, ended.history, ended.timing)
 
 
 def _design(scene: Scene, one: Individual) -> Design:

@@ -8,31 +8,35 @@ from dataclasses import dataclass
 
 from beamopt.design import Design
 from beamopt.errors import InputError
-from beamopt.outline.faults import Fault
-from beamopt.refine.refine import Refined, RefineStatus, StageRecord, refine
+from beamopt.refine.refine import Refined, RefineStatus, StageRecord, improved, refine
 from beamopt.scene import Scene
+from beamopt.search_settings import Refining
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.target import Target
 
 __all__ = ["Refinement", "refine_design", "refine_points"]
+
+SHORTEST = Refining(flips=10, walks=1, steps=1, rounds=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
     """A refined design.
 
-    design : never worse than the one before in L + R nor in K.
+    design : in L + R and in K never worse than the points before were, judged by the scene's rules.
     refined : how it came about. seconds : time it took.
+    compiling : before it, for kernels to be compiled or loaded [s].
     """
 
     design: Design
     refined: Refined
     seconds: float
+    compiling: float = 0.0
 
     @property
-    def faults(self) -> tuple[Fault, ...]:
-        """What is wrong with the outline of a sealed design."""
-        return tuple(self.design.outline.faults) if self.design.seal.rules.sealed else ()
+    def times(self) -> dict[str, float]:
+        """Seconds, by the names that `timing.csv` has them under."""
+        return {"refinement": self.seconds, "refinement compilation": self.compiling}
 
 
 def refine_design(
@@ -61,17 +65,21 @@ def refine_points(
     callback: Callable[[StageRecord], None] | None = None,
 ) -> Refinement:
     """Refine feature points for a target; the same for the same scene, seed and points."""
+    judge, symmetry = scene.judge(target), scene.making.repair(scene.grid.build())
+    begun = time.perf_counter()
+    improved(judge, points, SHORTEST, seed=0, symmetry=symmetry)  # runs every kernel once
     started = time.perf_counter()
     found = refine(
-        scene.judge(target),
+        judge,
         points,
         scene.refine,
         seed=scene.search.seed,
-        symmetry=scene.making.repair(scene.grid.build()),
+        symmetry=symmetry,
         callback=callback,
     )
     notes = {"scene": scene.name, "seed": scene.search.seed, **_losses(scene, found)}
-    return Refinement(scene.design_of(found.points, notes), found, time.perf_counter() - started)
+    seconds = time.perf_counter() - started
+    return Refinement(scene.design_of(found.points, notes), found, seconds, started - begun)
 
 
 def _losses(scene: Scene, found: Refined) -> dict[str, object]:

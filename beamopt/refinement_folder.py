@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from pathlib import Path
 from typing import Any
 
+from beamopt.design import load_design
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.refinement import Refinement
+from beamopt.result import EarlierRefinement
 from beamopt.result_tables import paths_csv, tips_table_csv
 from beamopt.scene import Scene
 from beamopt.target import Target
 
-__all__ = ["REFINEMENT_FILES", "refinement_numbers", "write_refined_design", "write_refinement"]
+__all__ = [
+    "REFINEMENT_FILES",
+    "becomes",
+    "refinement_numbers",
+    "set_aside",
+    "write_refined_design",
+    "write_refinement",
+]
 
 REFINEMENT_FILES = (
     "refined.json",
@@ -55,9 +66,43 @@ def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refi
     write_refinement(folder, scene, target, found)
     numbers = {"scene": scene.name, "seed": scene.search.seed, **refinement_numbers(found, scene)}
     write_atomic(folder / "summary.json", json_text(numbers))
-    timing = [("refinement", found.seconds, "s")]
+    timing = [(name, seconds, "s") for name, seconds in found.times.items()]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
     write_atomic(folder / "provenance.json", json_text(provenance()))
+
+
+def becomes(folder: Path, best: str | None, found: Refinement | None) -> EarlierRefinement:
+    """What is to become of the refinement in a folder.
+
+    best : the text of the run's best design now; that of the folder may be of an earlier one.
+    found : of it, where it was refined now.
+
+    Raises
+    ------
+    InputError : the refined design there is damaged.
+    """
+    there, earlier = folder / "refined.json", folder / "best.json"
+    if not there.exists():
+        return EarlierRefinement.NONE
+    if not earlier.exists() or earlier.read_text(encoding="utf-8") != best:
+        return EarlierRefinement.SET_ASIDE if found is None else EarlierRefinement.REPLACED
+    if found is None:
+        return EarlierRefinement.STAYS
+    notes = load_design(there).notes
+    is_better = notes.get("L", math.inf) + notes.get("R", 0.0) < found.refined.after.ruled_loss
+    return EarlierRefinement.BETTER if is_better else EarlierRefinement.REPLACED
+
+
+def set_aside(folder: Path) -> Path:
+    """Move a refinement that is of an earlier best design into a folder of its own."""
+    numbers = itertools.count(1)
+    names = (folder / f"earlier-refinement-{number}" for number in numbers)
+    aside = next(path for path in names if not path.exists())
+    aside.mkdir()
+    for name in reversed(REFINEMENT_FILES):  # the design last: until then it can be done again
+        if (folder / name).exists():
+            (folder / name).replace(aside / name)
+    return aside
 
 
 def stages_csv(found: Refinement) -> str:
@@ -77,7 +122,7 @@ def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
         "status": refined.status.value,
         "before": _losses(refined.before, refined.ratio_before, rules),
         "after": _losses(refined.after, refined.ratio, rules),
-        "faults": [str(fault) for fault in found.faults],
+        "faults": [str(fault) for fault in found.design.findings],
         "evaluations": refined.evaluations,
         "flips": refined.flips,
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 from functools import cached_property
 
 import numpy as np
@@ -20,9 +21,20 @@ from beamopt.rod.ladder import Rung
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.scene import Scene
 from beamopt.target import Target
+from beamopt.timing import Timing
 from beamopt.workspace import pressure_grid
 
-__all__ = ["Optimisation"]
+__all__ = ["EarlierRefinement", "Optimisation"]
+
+
+class EarlierRefinement(Enum):
+    """What became of a refinement in the folder of a run; the value is the text for people."""
+
+    NONE = "there was none"
+    REPLACED = "refined anew"
+    STAYS = "refined.json stays: it is of this best design"
+    BETTER = "refined.json stays: what was found now is not better"
+    SET_ASIDE = "refined.json was of an earlier best design and went to earlier-refinement"
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +46,9 @@ class Optimisation:
     best : the design with the lowest L + R of all that were judged.
     final : the design with the lowest L + R in the last population, the paper's result.
     history : one record a generation, the initial population first.
-    seconds : time that the search took.
+    timing : of the sections that were judged now.
     refinement : of the best design, where the scene asks for it and there was one.
+    there : what became of a refinement that the run folder held already.
     """
 
     status: StopReason
@@ -44,8 +57,14 @@ class Optimisation:
     best: Design
     final: Design
     history: tuple[Generation, ...]
-    seconds: float
+    timing: Timing
     refinement: Refinement | None = None
+    there: EarlierRefinement = EarlierRefinement.NONE
+
+    @property
+    def seconds(self) -> float:
+        """Time that the search took, without compiling [s]."""
+        return self.timing.seconds
 
     @property
     def verdict(self) -> Verdict:

@@ -3,32 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamopt.actuator import Loading, RodRules
-from beamopt.aim import Aim
 from beamopt.arrays import FloatArray
-from beamopt.bound_folder import bound_summary
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
-from beamopt.judge import Status, Verdict
+from beamopt.files import csv_text, json_text, write_atomic, write_changed
+from beamopt.folder import claim_folder, clear_leftovers, differences
+from beamopt.judge import Status
 from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
+from beamopt.model import read_json
 from beamopt.pairs import aim_csv
 from beamopt.provenance import provenance
-from beamopt.reach.reach import TOLERANCE
-from beamopt.refinement_folder import REFINEMENT_FILES, refinement_numbers, write_refinement
-from beamopt.result import Optimisation
+from beamopt.refinement_folder import (
+    REFINEMENT_FILES,
+    becomes,
+    refinement_numbers,
+    set_aside,
+    write_refinement,
+)
+from beamopt.result import EarlierRefinement, Optimisation
 from beamopt.result_tables import paths_csv, tips_table_csv
+from beamopt.run_summary import summary
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.target import Target
+from beamopt.timing import read_times, write_times
 
 __all__ = ["RunFolder"]
 
@@ -79,22 +83,37 @@ class RunFolder:
         """The append-only journal; whoever holds its lock may write to the folder."""
         return self.path / "journal.jsonl"
 
-    def begin(self, scene: Scene, target: Target) -> None:
-        """Keep what is asked for, or check that it is what the run there was asked for.
+    @property
+    def has_result(self) -> bool:
+        """Whether a search has ended here, or was interrupted and said so."""
+        return (self.path / "provenance.json").exists()
+
+    def check(self, scene: Scene) -> None:
+        """Check that what is asked for is what the run there, if any, was asked for.
 
         Raises
         ------
         InputError : the run to go on with has another scene or target.
         """
-        kept, sources = scene_to_keep(scene)
         if (self.path / "scene.toml").exists():
-            self._check_same(kept, sources)
+            self._check_same(*scene_to_keep(scene))
+
+    def begin(self, scene: Scene, target: Target) -> None:
+        """Keep what is asked for; how the run there refined is changed with what it refined."""
+        _, sources = scene_to_keep(scene)
         clear_leftovers(self.path, NAMES)
         for name, content in sources.items():
-            write_atomic(self.path / name, content)
+            write_changed(self.path / name, content)
         if len(target.aim):
-            write_atomic(self.path / "target.csv", aim_csv(target.aim))
-        write_atomic(self.path / "scene.toml", scene_text(kept))
+            write_changed(self.path / "target.csv", aim_csv(target.aim))
+        self._write_scene(scene, refined_as_before=True)
+
+    def _write_scene(self, scene: Scene, *, refined_as_before: bool) -> bool:
+        there = self.path / "scene.toml"
+        if refined_as_before and there.exists():
+            scene = scene.model_copy(update={"refine": load_scene(there).refine})
+        kept, _ = scene_to_keep(scene)
+        return write_changed(there, scene_text(kept))
 
     def _check_same(self, scene: Scene, sources: dict[str, bytes]) -> None:
         """Refuse to go on with another scene's run, naming the first key that differs."""
@@ -104,54 +123,91 @@ class RunFolder:
         if old["target"]["file"] is not None:
             old["target"]["file"] = Path(old["target"]["file"]).name
         old["target"]["paths"] = tuple(Path(path).name for path in old["target"]["paths"])
-        for key, before, now in _differences(old, new):
+        for key, before, now in differences(old, new, GOES_ON):
             raise InputError(there, key, before, f"the run to go on with; now asked for: {now}")
         for name, content in sources.items():
             kept = self.path / name
             if kept.exists() and kept.read_bytes() != content:
                 raise InputError(kept, "", None, "differs from the file that the scene names now")
 
-    def write_result(self, result: Optimisation, *, figures: bool = True) -> None:
+    def write_result(self, result: Optimisation, *, figures: bool = True) -> EarlierRefinement:
         """Write designs, tables and figures; each whole or not at all.
 
-        Where no candidate, or none of the last population, could be judged, there is no design to
-        write as the best, or as the final one.
-        """
-        rules = result.scene.making.rules_set
-        write_atomic(self.path / "history.csv", history_csv(result.history, rules))
-        if result.verdict.status is Status.JUDGED:
-            result.best.save(self.path / "best.json")
-            if result.history[-1].best.verdict.status is Status.JUDGED:
-                result.final.save(self.path / "final.json")
-            if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
-                self._write_tables(result)
-                if figures:
-                    self._draw(result)
-        refinement = result.refinement
-        if refinement is None:  # what is there belongs to an earlier best
-            for name in REFINEMENT_FILES:
-                (self.path / name).unlink(missing_ok=True)
-        else:
-            write_refinement(self.path, result.scene, result.target, refinement, figures=figures)
-        write_atomic(self.path / "summary.json", json_text(summary(result)))
-        timing = [
-            ("search", result.seconds, "s"),
-            ("evaluation", result.seconds / result.evaluations, "s"),
-        ]
-        if refinement is not None:
-            timing.append(("refinement", refinement.seconds, "s"))
-        write_atomic(self.path / "timing.csv", csv_text("what,value,unit", timing))
-        made = {"seed": result.scene.search.seed, **provenance()}
-        write_atomic(self.path / "provenance.json", json_text(made))
+        What is there already stays as it is, the times too where nothing else changes. Where no
+        candidate, or none of the last population, could be judged, there is no design to write as
+        the best, or as the final one.
 
-    def _write_tables(self, result: Optimisation) -> None:
-        """What the best design's tip does."""
-        aim = result.target.aim
+        Returns
+        -------
+        EarlierRefinement : what became of a refinement that was there.
+        """
+        found, judged = result.refinement, result.verdict.status is Status.JUDGED
+        best = result.best.json() if judged else None
+        there = becomes(self.path, best, found)
+        if there is EarlierRefinement.SET_ASIDE:
+            set_aside(self.path)
+        stays = there in (EarlierRefinement.STAYS, EarlierRefinement.BETTER)
+        numbers, times = self._of_refinement(result, stays)
+        if there is EarlierRefinement.REPLACED and not self._has("best.json", best):
+            for name in REFINEMENT_FILES:  # before the best design that they are not of
+                (self.path / name).unlink(missing_ok=True)
+        changed = self._write_scene(result.scene, refined_as_before=stays)
+        changed |= self._write_search(result, figures)
+        if found is not None and not stays:
+            write_refinement(self.path, result.scene, result.target, found, figures=figures)
+        changed |= self._write("summary.json", json_text(summary(result) | numbers))
+        provenance_file = self.path / "provenance.json"
+        if changed or not provenance_file.exists():
+            write_times(self.path / "timing.csv", result.timing, times)
+            made = {"seed": result.scene.search.seed, **provenance()}
+            write_atomic(provenance_file, json_text(made))
+        return there
+
+    def _has(self, name: str, text: str | None) -> bool:
+        file = self.path / name
+        return file.exists() and file.read_text(encoding="utf-8") == text
+
+    def _write(self, name: str, text: str) -> bool:
+        return write_changed(self.path / name, text)
+
+    def _of_refinement(
+        self, result: Optimisation, stays: bool
+    ) -> tuple[dict[str, Any], dict[str, float]]:
+        """What the summary says of the refinement in the folder, and its time; empty without."""
+        found = result.refinement
+        if stays:
+            numbers, times = (self.path / name for name in ("summary.json", "timing.csv"))
+            said = read_json(numbers).get("refinement") if numbers.exists() else None
+            taken = {name: s for name, s in read_times(times).items() if name.startswith("refine")}
+            return {} if said is None else {"refinement": said}, taken
+        if found is None:
+            return {}, {}
+        return {"refinement": refinement_numbers(found, result.scene)}, found.times
+
+    def _write_search(self, result: Optimisation, figures: bool) -> bool:
+        """What the search found; says whether anything is new."""
+        rules = result.scene.making.rules_set
+        new = self._write("history.csv", history_csv(result.history, rules))
+        if result.verdict.status is not Status.JUDGED:
+            return new
+        new |= self._write("best.json", result.best.json())
+        if result.history[-1].best.verdict.status is Status.JUDGED:
+            new |= self._write("final.json", result.final.json())
+        if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
+            new |= self._write_tables(result)
+            if figures and (new or not all((self.path / name).exists() for name in FIGURES)):
+                self._draw(result)
+        return new
+
+    def _write_tables(self, result: Optimisation) -> bool:
+        """What the best design's tip does; says whether that is new."""
+        aim, new = result.target.aim, False
         if len(aim):
-            write_atomic(self.path / "tips.csv", tips_table_csv(aim, result.answers))
+            new |= self._write("tips.csv", tips_table_csv(aim, result.answers))
         if result.reach is not None:
             counts = [len(path) for path in result.target.paths]
-            write_atomic(self.path / "paths.csv", paths_csv(result.reach, counts))
+            new |= self._write("paths.csv", paths_csv(result.reach, counts))
+        return new
 
     def _draw(self, result: Optimisation) -> None:
         from beamopt.plot.figures import convergence_figure, design_figure, design_title
@@ -166,91 +222,6 @@ class RunFolder:
             ("convergence", convergence_figure(lowest, mean, ever, title)),
         ):
             save_figure(figure, self.path / f"{name}.svg", self.path / f"{name}.png")
-
-
-def summary(result: Optimisation) -> dict[str, Any]:
-    """How a search ended and what it found, without times."""
-    pieces = result.best.section.pieces
-    return (
-        {
-            "status": result.status.value,
-            "scene": result.scene.name,
-            "seed": result.scene.search.seed,
-            "generations": result.history[-1].index,
-            "evaluations": result.evaluations,
-            "best": _summary_of(result.verdict, result.target.aim)
-            | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
-            "final": _summary_of(result.history[-1].best.verdict, result.target.aim),
-            "warnings": list(result.target.warnings),
-        }
-        | {"bound": bound_summary(result.bound, result.verdict.L)}
-        | _making(result)
-        | _rod(result)
-        | _outline(result)
-        | _paths(result)
-        | _refinement(result)
-    )
-
-
-def _refinement(result: Optimisation) -> dict[str, Any]:
-    """What refining the best design came to; nothing where nobody asked."""
-    found = result.refinement
-    return {} if found is None else {"refinement": refinement_numbers(found, result.scene)}
-
-
-def _making(result: Optimisation) -> dict[str, Any]:
-    """What the rules for what can be made did; nothing without any."""
-    if not result.scene.making.rules_set:
-        return {}
-    counts = result.history[-1].rejected
-    rejected = {status.name: counts[status] for status in Status if status in counts}
-    best = result.history[-1].best_ever.verdict
-    weighted = {"best_R": best.R} if best.status is Status.JUDGED else {}
-    return {"rejected": rejected, **weighted}
-
-
-def _rod(result: Optimisation) -> dict[str, Any]:
-    """How the rod is solved; nothing for the paper's arc."""
-    scene, climb = result.scene, result.scene.climb
-    if (scene.rod, scene.loads) == (RodRules(), Loading()):
-        return {}
-    said = {"rung": climb.model.rung.value, "reason": climb.reason}
-    moved = result.neglected if result.verdict.status is Status.JUDGED else None
-    if moved is None:
-        return {"rod": said}
-    there = moved if math.isfinite(moved) else Status.NO_EQUILIBRIUM.value
-    return {"rod": said | {"neglected_loads_move_mm": there}}
-
-
-def _outline(result: Optimisation) -> dict[str, Any]:
-    """What the best design is once it is polygons; nothing for an unsealed one."""
-    sealed = result.best.seal.rules.sealed and result.verdict.status is Status.JUDGED
-    if not sealed:
-        return {}
-    faults = [str(fault) for fault in result.best.outline.faults]
-    if not math.isfinite(result.outline_loss):
-        return {"outline": {"status": Status.NO_EQUILIBRIUM.value, "faults": faults}}
-    rms = result.target.aim.rms_distance(result.outline_loss)
-    return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
-
-
-def _paths(result: Optimisation) -> dict[str, Any]:
-    """How the best design follows trajectories; nothing without any."""
-    judged = result.verdict.status is Status.JUDGED
-    if not judged or result.reach is None or np.isnan(result.reach.distances).any():
-        return {}
-    distances = result.reach.distances
-    reached = int((distances <= TOLERANCE).sum())
-    said = {"samples": len(distances), "reached": reached, "tolerance": TOLERANCE}
-    return {"paths": said | {"largest_distance": float(distances.max())}}
-
-
-def _summary_of(verdict: Verdict, aim: Aim) -> dict[str, Any]:
-    if verdict.status is not Status.JUDGED:
-        return {"status": verdict.status.value}
-    rms = aim.rms_distance(verdict.L)
-    losses = {"L": verdict.L, "K": verdict.K, "T": verdict.T, "rms_distance": rms}
-    return {"status": verdict.status.value, **losses}
 
 
 def history_csv(history: tuple[Generation, ...], with_rules: bool = False) -> str:
@@ -273,13 +244,3 @@ def history_csv(history: tuple[Generation, ...], with_rules: bool = False) -> st
 
 def _losses(record: Generation) -> FloatArray:
     return np.array([one.verdict.L for one in record.population])
-
-
-def _differences(old: Any, new: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
-    if isinstance(old, dict) and isinstance(new, dict):
-        for name in new:
-            inner = f"{key}.{name}" if key else name
-            if inner not in GOES_ON:
-                yield from _differences(old.get(name), new[name], inner)
-    elif old != new:
-        yield key, old, new

@@ -55,7 +55,7 @@ class SectionRules(Model):
         0.5, "probability that one is material; the supplies share the rest", low=0, high=1
     )
     wall_elements: WallElements = quantity(
-        4, "elements of a wall between supplies, even", low=0, high=64
+        4, "elements of a wall between supplies, even; none if sealed", low=0, high=64
     )
 
 
@@ -94,6 +94,13 @@ class Scene(Model):
         if not name or any(not (c.isalnum() or c in "-_") for c in name):
             raise ValueError("letters, digits, - and _")
         return name
+
+    @field_validator("description")
+    @classmethod
+    def _can_be_written(cls, described: str) -> str:
+        if any("\ud800" <= c <= "\udfff" for c in described):
+            raise ValueError("text without halves of surrogate pairs")
+        return described
 
     @model_validator(mode="after")
     def _leaves_room(self) -> Scene:

@@ -37,7 +37,7 @@ def _table(model: Model) -> list[str]:
 
 def _toml(value: Any) -> str:
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return _text(value)
     if isinstance(value, Model):
         return _toml(value.model_dump(exclude_defaults=True))
     if isinstance(value, dict):
@@ -51,4 +51,9 @@ def _toml(value: Any) -> str:
 
 def _key(name: str) -> str:
     bare = name.isascii() and name.replace("_", "").replace("-", "").isalnum()
-    return name if bare else json.dumps(name, ensure_ascii=False)
+    return name if bare else _text(name)
+
+
+def _text(value: str) -> str:
+    """A basic string of TOML: JSON's escapes, and DEL, which JSON holds as it is."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -4,7 +4,7 @@
     checked = femcheck.check_design(subject, Path("checked"), femcheck.CheckOptions(), workers=2)
     print(checked.holds, checked.comparison.worst)
     found = femcheck.predict_design(subject, Path("silicone"), femcheck.PredictionOptions())
-    print(femcheck.verdict(found), found.stable_box)
+    print(femcheck.verdict(found), found.safe_box.pressure)
     question = femcheck.Question.of("mine", subject.design, femcheck.PredictionOptions())
     within = femcheck.answer_within(question, 0.1)  # mm; the cheapest model that is near enough
     print(within.ending.value, within.chosen, within.worst)

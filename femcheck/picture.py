@@ -23,7 +23,7 @@ from femcheck.check.subject import Subject
 
 __all__ = ["draw"]
 
-SECONDS = 180.0
+SECONDS = 600.0  # of a clock, after which drawing is taken to hang; it takes five
 
 
 def draw(

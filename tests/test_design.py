@@ -148,7 +148,7 @@ BAD: list[tuple[str, Any, str]] = [
     ("grid.outer_radius = 0.025", lambda d: d["grid"].update(outer_radius=0.025), "0.5 … 1000 mm"),
     ("grid", lambda d: d["grid"].update(outer_radius=5.0), "below outer_radius"),
     ("grid", lambda d: d["grid"].update(radial=4000, angular=16000), "4,000,000"),
-    ("actuator.length = 0.1", lambda d: d["actuator"].update(length=0.1), "5 … 5000 mm"),
+    ("actuator.length = 0.05", lambda d: d["actuator"].update(length=0.05), "0.1 … 100000 mm"),
     (
         "actuator.youngs_modulus = 300000.0",
         lambda d: d["actuator"].update(youngs_modulus=3e5),

@@ -3,14 +3,15 @@ import errno
 import io
 import json
 import os
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.files import cell_text, csv_text, json_text, write_atomic
 
 
 def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
@@ -51,6 +52,48 @@ def test_floats_survive_tables_and_json(values: list[float]) -> None:
 def test_cells_with_commas_are_quoted() -> None:
     text = csv_text("a,b", [["one, two", None]])
     assert list(csv.reader(io.StringIO(text))) == [["a", "b"], ["one, two", ""]]
+
+
+FORMULAS = st.from_regex(r"\A'{0,2}[=+\-@\t\r].{0,5}\Z")
+
+
+@given(st.lists(st.one_of(st.text(), FORMULAS), min_size=1, max_size=3))
+@example(
+    [
+        "=1+1",
+        "-1.5",
+        "-1.5e-3",
+        "-x",
+        "'-x",
+        "+",
+        "\t=1",
+        "\r",
+        "@a",
+        "'",
+        "-\N{ARABIC-INDIC DIGIT ONE}",
+    ]
+)
+def test_no_text_of_a_table_is_a_formula(texts: list[str]) -> None:
+    """And it is read back as it was; numbers stay numbers."""
+    header = ",".join(f"c{k}" for k in range(len(texts)))
+    written = csv_text(header, [texts])
+    ((_, read)) = csv.reader(io.StringIO(written, newline=""))
+    for text, cell in zip(texts, read, strict=True):
+        assert cell_text(cell) == text
+        if cell and cell[0] in "=+-@\t\r":
+            assert cell == text
+            assert np.isfinite(float(cell)) or "e" in cell.lower()
+
+
+def test_a_negative_number_stays_one() -> None:
+    assert csv_text("a,b,c,d", [[-1.5, -2, "-1.5", "+3e-4"]]) == "a,b,c,d\n-1.5,-2,-1.5,+3e-4\n"
+
+
+def test_tables_are_written_in_one_place() -> None:
+    root = Path(__file__).resolve().parents[1]
+    modules = [*(root / "beamopt").rglob("*.py"), *(root / "femcheck").rglob("*.py")]
+    writers = [path.name for path in modules if re.search(r"csv\.\w*[wW]riter", path.read_text())]
+    assert writers == ["files.py"]
 
 
 def test_json_keeps_lists_of_numbers_on_one_line() -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.errors import InputError
-from beamopt.line_journal import LineJournal
+from beamopt.line_journal import LineJournal, with_digest, without_digest
 
 ASKED = {"schema": "test/1", "n": (1, 2), "text": "höhe\u2028\x85"}
 ENTRIES: list[dict[str, Any]] = [{"a": 1.5}, {"b": "zwei\u2028\x0b\nrows"}, {"c": [None, 0.1]}]
@@ -63,12 +63,59 @@ def test_damage_is_said_and_left_alone(tmp_path: Path, line: bytes) -> None:
         assert path.read_bytes() == damaged
 
 
+def test_every_changed_digit_is_noticed(tmp_path: Path) -> None:
+    """In the first line as in the others, the digests included; the line is named."""
+    path = tmp_path / "j"
+    whole = filled(path)
+    places = [place for place, byte in enumerate(whole) if 48 <= byte < 58]
+    assert len(places) > 40
+    for place in places:
+        path.write_bytes(
+            whole[:place] + bytes([48 + (whole[place] - 47) % 10]) + whole[place + 1 :]
+        )
+        for asked in (ASKED, None):
+            with pytest.raises(InputError) as caught:
+                LineJournal(path, asked, "test")
+            line = whole[:place].count(b"\n") + 1
+            assert (caught.value.where, caught.value.key) == (str(path), f"line {line}")
+
+
+@given(st.dictionaries(st.text(), st.none() | st.floats() | st.text(), min_size=1))
+def test_a_digest_is_of_what_was_written(entry: dict[str, Any]) -> None:
+    text = json.dumps(entry)
+    assert without_digest(with_digest(text)) == text
+    assert "digest" in json.loads(with_digest(text))
+
+
+def test_a_journal_of_an_earlier_version_is_gone_on_with(tmp_path: Path) -> None:
+    """As it was written: without digests."""
+    path = tmp_path / "j"
+    old = "".join(json.dumps(one) + "\n" for one in (ASKED, *ENTRIES))
+    path.write_text(old)
+    again = journal(path)
+    assert again.entries == ENTRIES
+    again.add({"d": 1})
+    assert path.read_text() == old + '{"d": 1}\n'
+    assert journal(path).entries == [*ENTRIES, {"d": 1}]
+
+
+def test_lines_of_two_versions_are_no_journal(tmp_path: Path) -> None:
+    path = tmp_path / "j"
+    whole = filled(path).decode()
+    old = "".join(json.dumps(one) + "\n" for one in (ASKED, *ENTRIES))
+    for mixed in (whole + old.splitlines()[1] + "\n", old + whole.splitlines()[1] + "\n"):
+        path.write_text(mixed)
+        with pytest.raises(InputError, match="line 5"):
+            journal(path)
+
+
 @pytest.mark.parametrize("head", [{}, [], ASKED | {"n": [1, 3]}, ASKED | {"more": 1}])
 def test_another_question_is_refused(tmp_path: Path, head: object) -> None:
     path = tmp_path / "j"
     path.write_text(json.dumps(head) + "\n")
     before = path.read_bytes()
-    with pytest.raises(InputError, match="the test there is of another question"):
+    said = "the test there is of another question" if isinstance(head, dict) else "line 1"
+    with pytest.raises(InputError, match=said):
         journal(path)
     assert path.read_bytes() == before
 

@@ -19,7 +19,7 @@ from beamopt.optimisation import optimize
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
-from beamopt.run_folder import summary
+from beamopt.run_summary import summary
 from beamopt.scene import Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.section.saint_venant import section_saint_venant

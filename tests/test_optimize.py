@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
@@ -11,7 +12,8 @@ from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason
 from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
-from tests.validation.resume import content
+from beamopt.timing import read_times
+from tests.validation.resume import UNLIKE, content, everything
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=5"])
 STUCK = ("search.crossover_probability=0", "search.mutation_probability=0")
@@ -122,6 +124,73 @@ def test_a_finished_run_is_not_searched_again(tmp_path: Path) -> None:
     before = content(tmp_path / "run")
     optimize(SCENE, tmp_path / "run", resume=True, figures=False)
     assert content(tmp_path / "run") == before
+
+
+@pytest.mark.parametrize(
+    ("less", "key", "value"),
+    [
+        (["search.generations=4"], "search.generations", 4),
+        (["search.generations=0"], "search.generations", 0),
+        (["stop.evaluations=60"], "stop.evaluations", 60),
+        (["stop.loss=1e9"], "stop.loss", 1e9),
+        (["stop.stall=1"], "stop.stall", 1),
+    ],
+)
+def test_a_run_never_goes_backwards(
+    less: list[str], key: str, value: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    five = [f"--set={one}" for one in ("search.generations=5", *(STUCK if "stall" in key else ()))]
+    words = ["optimize", "hand-drawn-section", "--out", str(tmp_path / "run")]
+    assert run([*words, *five]) == 0
+    before = everything(tmp_path / "run")
+    capsys.readouterr()
+    assert run([*words, "--resume", *five, *(f"--set={one}" for one in less)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"{key} = {value}" in said
+    assert "the search there ended after generation 5" in said
+    assert everything(tmp_path / "run") == before
+
+
+def test_a_longer_run_that_stops_for_the_same_reason_changes_nothing(tmp_path: Path) -> None:
+    keys = ["search.generations=5", "stop.evaluations=60"]
+    first = optimize(load_scene("hand-drawn-section", keys), tmp_path / "run", figures=False)
+    assert first.status is StopReason.EVALUATIONS
+    before = everything(tmp_path / "run")
+    optimize(load_scene("hand-drawn-section", keys), tmp_path / "run", resume=True, figures=False)
+    assert everything(tmp_path / "run") == before
+
+
+def test_reading_the_journal_is_no_search_to_be_cut(tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "run", figures=False)
+    before = everything(tmp_path / "run")
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_at(2, tmp_path / "run")
+    assert everything(tmp_path / "run") == before
+
+
+def test_times_are_of_sections_judged_and_not_of_compiling(tmp_path: Path) -> None:
+    result = optimize(SCENE, tmp_path / "run", figures=False)
+    times = read_times(tmp_path / "run" / "timing.csv")
+    assert set(times) == {"search", "evaluation", "compilation"}
+    assert result.timing.judged == result.evaluations == 110
+    assert times["evaluation"] == pytest.approx(times["search"] / 110)
+    longer = load_scene("hand-drawn-section", ["search.generations=7"])
+    more = optimize(longer, tmp_path / "run", resume=True, figures=False)
+    assert more.timing.judged == 36
+    times = read_times(tmp_path / "run" / "timing.csv")
+    assert times["evaluation"] == pytest.approx(times["search"] / 36)
+
+
+def test_what_is_missing_of_a_finished_run_is_written_again(tmp_path: Path) -> None:
+    optimize(SCENE, tmp_path / "run")
+    before = everything(tmp_path / "run")
+    for name in ("best.png", "tips.csv", "summary.json"):
+        (tmp_path / "run" / name).unlink()
+    optimize(SCENE, tmp_path / "run", resume=True)
+    after = everything(tmp_path / "run")
+    assert {name for name in before if before[name] != after[name]} <= UNLIKE
+    assert read_times(tmp_path / "run" / "timing.csv")["evaluation"] > 0
 
 
 def test_leftovers_of_a_kill_are_cleared_away(tmp_path: Path) -> None:

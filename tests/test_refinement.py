@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,15 +13,16 @@ import beamopt
 from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.evolve.stopping import StopReason
 from beamopt.folder import design_file
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus
 from beamopt.refine.truth import View, judged_on
 from beamopt.refinement import refine_design
 from beamopt.refinement_folder import REFINEMENT_FILES
-from beamopt.result import Optimisation
+from beamopt.result import EarlierRefinement, Optimisation
 from beamopt.scene import load_scene
-from tests.validation.resume import content
+from tests.validation.resume import content, everything
 
 KEYS = ("grid.radial=32", "grid.angular=90", "section.feature_points=30")
 SHORT = ("search.generations=3", "refine.rounds=2", "refine.flips=4000")
@@ -163,14 +165,76 @@ def test_a_drawing_has_no_points_to_refine() -> None:
         refine_design(design, scene)
 
 
-def test_a_search_that_goes_on_drops_what_was_refined_of_an_earlier_best(tmp_path: Path) -> None:
+def test_a_search_that_goes_on_sets_aside_what_was_refined_of_an_earlier_best(
+    tmp_path: Path,
+) -> None:
     folder, keys = tmp_path / "run", [*KEYS, *SHORT]
     optimize(load_scene("hand-drawn-workspace", [*keys, "refine.finish=true"]), folder)
     assert design_file(folder).name == "refined.json"
+    refined = {name: one for name, one in content(folder).items() if name in REFINEMENT_FILES}
+    assert set(refined) == set(REFINEMENT_FILES) - {"refined_paths.csv"}
     longer = load_scene("hand-drawn-workspace", [*keys, "search.generations=5"])
-    optimize(longer, folder, resume=True, figures=False)
+    result = optimize(longer, folder, resume=True, figures=False)
+    assert result.there is EarlierRefinement.SET_ASIDE
     assert not {path.name for path in folder.iterdir()} & set(REFINEMENT_FILES)
+    assert content(folder / "earlier-refinement-1") == refined
     assert design_file(folder).name == "best.json"
+    assert not load_scene(folder / "scene.toml").refine.finish
+    assert "refinement" not in json.loads((folder / "summary.json").read_text())
+
+
+@pytest.mark.parametrize("asked", [(), ("--refine",)], ids=["search", "search and refining"])
+def test_resuming_a_finished_run_changes_no_byte(
+    asked: tuple[str, ...], finished, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whether refining is asked for again or not."""
+    folder = Path(shutil.copytree(finished[0], tmp_path / "run"))
+    before = everything(folder)
+    words = ["optimize", "hand-drawn-workspace", "--out", str(folder), "--resume", *asked]
+    assert run([*words, *SETTINGS]) == 0
+    assert everything(folder) == before
+    said = capsys.readouterr().out
+    assert (EarlierRefinement.STAYS.value in said) is (not asked)
+    assert run(["refine", str(folder)]) == 0
+    assert everything(folder) == before
+
+
+def test_a_worse_refinement_takes_no_better_ones_place(finished, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(finished[0], tmp_path / "run"))
+    before = everything(folder)
+    less = ("refine.rounds=1", "refine.flips=0", "refine.steps=0", "refine.finish=true")
+    scene = load_scene(folder / "scene.toml", less)
+    result = optimize(scene, folder, resume=True)
+    assert result.there is EarlierRefinement.BETTER
+    assert everything(folder) == before
+
+
+def test_a_better_refinement_takes_the_place_with_its_settings(tmp_path: Path) -> None:
+    keys = [*KEYS, "search.generations=3", "refine.finish=true"]
+    less = ("refine.rounds=1", "refine.flips=0", "refine.steps=2")
+    folder = tmp_path / "run"
+    first = optimize(load_scene("hand-drawn-workspace", [*keys, *less]), folder, figures=False)
+    more = load_scene("hand-drawn-workspace", [*keys, "refine.rounds=2", "refine.flips=4000"])
+    second = optimize(more, folder, resume=True, figures=False)
+    assert second.there is EarlierRefinement.REPLACED
+    assert first.refinement is not None
+    assert second.refinement is not None
+    assert second.refinement.refined.after.L < first.refinement.refined.after.L
+    assert load_scene(folder / "scene.toml").refine == more.refine
+    optimize(more, tmp_path / "whole", figures=False)
+    assert content(folder) == content(tmp_path / "whole")
+
+
+def test_refining_that_is_cut_leaves_a_finished_run_as_it_was(finished, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(finished[0], tmp_path / "run"))
+    before = everything(folder)
+
+    def interrupt(record: object) -> None:
+        raise KeyboardInterrupt
+
+    scene = load_scene(folder / "scene.toml", ["refine.flips=100"])
+    assert optimize(scene, folder, resume=True, refining=interrupt).status is StopReason.INTERRUPTED
+    assert everything(folder) == before
 
 
 def test_a_search_that_was_stopped_is_not_gone_on_with(
@@ -239,4 +303,4 @@ def test_a_refined_design_says_how_it_follows_trajectories_and_what_rules_weigh(
     assert squares == pytest.approx(found.refined.after.L)
     said = json.loads((tmp_path / "run" / "summary.json").read_text())["refinement"]
     assert said["after"]["R"] == found.refined.after.R > 0
-    assert said["faults"] == []
+    assert said["faults"] == [str(fault) for fault in found.faults]

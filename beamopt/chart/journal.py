@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +31,7 @@ class Journal:
     def __init__(self, path: Path, asked: dict[str, Any]) -> None:
         self.path = path
         self._lines = LineJournal(path, {"schema": SCHEMA, **asked}, "stability map")
-        try:
-            read = [_sample(asked["seed"], data) for data in self._lines.entries]
-        except (ValueError, KeyError, TypeError, AttributeError):
-            raise self._lines.damaged() from None
+        read = self._lines.read(partial(_sample, asked["seed"]))
         self.samples = {sample.case.index: sample for sample in read}
 
     def add(self, sample: Sample) -> None:
@@ -45,7 +43,7 @@ class Journal:
 def _data(sample: Sample) -> dict[str, Any]:
     return {
         "index": sample.case.index,
-        "witness": sample.witness.value,
+        "witness": sample.witness.name,
         "truth": sample.truth.name,
         "gap": sample.gap,
         "seconds": sample.seconds,
@@ -65,5 +63,6 @@ def _sample(seed: int, data: dict[str, Any]) -> Sample:
         Row(case, method, resolution, Verdict[verdict], RodStatus[status], distance, seconds)
         for method, resolution, verdict, status, distance, seconds in data["rows"]
     )
-    witness, truth = Witness(data["witness"]), RodStatus[data["truth"]]
+    # earlier versions wrote names in small letters
+    witness, truth = Witness[data["witness"].upper()], RodStatus[data["truth"]]
     return Sample(case, witness, truth, data["gap"], rows, data["seconds"])

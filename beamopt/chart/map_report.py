@@ -67,7 +67,7 @@ def _rounded(value: float) -> float | None:
 
 def _success_csv(samples: Sequence[Sample]) -> str:
     """A row a method and kind of load, and one a method for all of them."""
-    names = [verdict.value.replace(" ", "_") for verdict in Verdict]
+    names = [verdict.name.lower() for verdict in Verdict]
     lines = []
     for method in _methods(samples):
         for kind in (*Kind, None):
@@ -105,12 +105,20 @@ def _draw(folder: Path, samples: Sequence[Sample]) -> None:
         )
         for kind in Kind
     ]
-    figure = map_figure(by_size, f"{count}: commonest verdict and median time")
+    texts = {verdict.name: verdict.value for verdict in Verdict}
+    title = f"{count}: commonest verdict and median time"
+    figure = map_figure(by_size, title, texts=texts)
     save_figure(figure, folder / "stability.svg", folder / "stability.png")
     columns = [(f"{value:g}", value) for value in SLENDERNESSES]
-    title = "length over diameter, all loads"
-    panel = _panel(title, samples, columns, lambda row: row.case.slenderness, with_share=True)
-    figure = map_figure([panel], f"{count}: commonest verdict, success, time", across=1)
+    panel = _panel(
+        "length over diameter, all loads",
+        samples,
+        columns,
+        lambda row: row.case.slenderness,
+        with_share=True,
+    )
+    title = f"{count}: commonest verdict, success, time"
+    figure = map_figure([panel], title, across=1, texts=texts)
     save_figure(figure, folder / "slenderness.svg", folder / "slenderness.png")
 
 
@@ -145,4 +153,4 @@ def _cell(rows: Sequence[Row], with_share: bool) -> Cell | None:
     flagged = any(row.verdict.is_wrong_tip for row in rows) and not usual.is_wrong_tip
     rates = rates_of(rows)
     share = rates.success if with_share and rates.decided else None
-    return Cell(usual.value, rates.seconds, flagged, share)
+    return Cell(usual.name, rates.seconds, flagged, share)

@@ -66,7 +66,10 @@ def all_methods(parents: IndexArray | None = None) -> tuple[Method, ...]:
 
 
 def limited(method: Method, seconds: float) -> Method:
-    """The same method, which gives a case up after `seconds`, if it is one that can."""
+    """The same method, which gives a case up after a time, if it is one that can.
+
+    seconds : of processor time.
+    """
     if isinstance(method, Elements | Shooting | MultipleShooting | Collocation):
         return replace(method, seconds=seconds)
     return method

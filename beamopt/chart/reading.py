@@ -1,4 +1,4 @@
-"""What a stability map says, in words: where methods fail, how, and which two to ship."""
+"""What a stability map says, in words: where methods succeed, where and how they fail."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from textwrap import fill
 import numpy as np
 
 from beamopt.chart.cases import Kind, sizes_of
-from beamopt.chart.sampling import LIMIT, SHIPPED, Row, Sample
+from beamopt.chart.sampling import ADAPTIVE, LIMIT, Row, Sample
 from beamopt.chart.summary import Rates, rates_of
 from beamopt.chart.verdict import NEAR, RIGHT, Verdict, Witness
 from beamopt.rod.status import RodStatus
@@ -32,19 +32,19 @@ def reading(samples: Sequence[Sample]) -> str:
             rows.setdefault(row.method, []).append(row)
     rates = {method: rates_of(own) for method, own in rows.items()}
     parts = [
-        "# What the stability map says",
+        "# Where methods for loaded rods are right",
         _setting(samples),
         "## Rates",
         _rates_table(rows, rates),
         "## Where each is right",
-        f"The largest size up to which at least {SAFE:.0%} of the cases of every size are told as "
-        "they are.",
+        f"The largest size up to which a method succeeds in at least {SAFE:.0%} of the cases of "
+        "every size.",
         _reach_table(rows),
         "## How each fails",
         "\n".join(f"- **{method}**: {_failures(rows[method], rates[method])}" for method in rates),
-        "## The two to ship",
-        _choice(rows, rates),
-        "## Wrong tips of the modes, and of what is shipped",
+        "## Successes less wrong tips",
+        _order(rows, rates),
+        f"## Wrong tips of {ADAPTIVE} and modes, by case",
         _wrong_tips(rows),
     ]
     return "\n\n".join(parts) + "\n"
@@ -62,8 +62,8 @@ def _setting(samples: Sequence[Sample]) -> str:
         "The truth is where growing loads lead through stable equilibria, as strain modes and",
         "elements find it that both follow the load: in",
         f"{witnesses[Witness.BOTH]:,} cases they agree; in {witnesses[Witness.ELEMENTS]} elements",
-        f"alone know it, in {witnesses[Witness.MODES]} modes alone, the other one being in trouble",
-        f"of its own; {witnesses[Witness.NEITHER]} are undecided and count nowhere.",
+        f"alone find it, in {witnesses[Witness.MODES]} modes alone, where the other method fails;",
+        f"{witnesses[Witness.NEITHER]} are undecided and are left out of all rates.",
         f"In {refusing} of the decided cases there is no equilibrium, and",
         f"a status is the right answer. Right is a tip within {RIGHT:.0%} of the length, a wrong",
         f"branch one that is more than {NEAR:.0%} away, for whatever reason; too slow is more than",
@@ -138,10 +138,10 @@ def _score(rates: Rates) -> float:
     return rates.success - rates.wrong_tips if rates.decided else -np.inf
 
 
-def _choice(rows: Rows, rates: dict[str, Rates]) -> str:
-    """The best method as the default, the next one behind it; and how the two do together."""
+def _order(rows: Rows, rates: dict[str, Rates]) -> str:
+    """The methods by their score, and what the first two come to together."""
     order = sorted(
-        (name for name in rates if name != SHIPPED),
+        (name for name in rates if name != ADAPTIVE),
         key=lambda name: (-_score(rates[name]), rates[name].seconds),
     )
     if len(order) < 2:
@@ -150,22 +150,22 @@ def _choice(rows: Rows, rates: dict[str, Rates]) -> str:
     known = {row.case.index: row.verdict for row in rows[first]}
     missed = {index for index, verdict in known.items() if _is_failure(verdict)}
     wrong = {index for index in missed if known[index].is_wrong_tip}
-    told = {row.case.index for row in rows[second] if row.verdict.is_success}
+    right = {row.case.index for row in rows[second] if row.verdict.is_success}
     a, b = rates[first], rates[second]
     said = [
-        f"By successes less wrong tips: **{first}** as the default ({a.success:.1%} success,",
-        f"{a.wrong_tips:.1%} wrong tips, {1e3 * a.seconds:.2g} ms) and **{second}** as the second",
-        f"({b.success:.1%}, {b.wrong_tips:.1%}, {1e3 * b.seconds:.2g} ms). Of the {len(missed)}",
-        f"cases that {first} does not tell as they are, {second} does in {len(missed & told)}; of",
-        f"its {len(wrong)} wrong tips, in {len(wrong & told)}. The order of all by that score:",
+        "Share of successes less share of wrong tips:",
         ", ".join(f"{name} {_score(rates[name]):.3f}" for name in order) + ".",
+        f"First: **{first}** ({a.success:.1%} success, {a.wrong_tips:.1%} wrong tips,",
+        f"{1e3 * a.seconds:.2g} ms); second: **{second}** ({b.success:.1%}, {b.wrong_tips:.1%},",
+        f"{1e3 * b.seconds:.2g} ms). {second} succeeds in {len(missed & right)} of the",
+        f"{len(missed)} cases in which {first} fails, and in {len(wrong & right)} of the",
+        f"{len(wrong)} in which the tip of {first} is wrong.",
     ]
-    if SHIPPED in rates:
-        c = rates[SHIPPED]
+    if ADAPTIVE in rates:
+        c = rates[ADAPTIVE]
         said.append(
-            f"What is shipped ({SHIPPED}: refined until its own estimate of the error is within"
-            f" 0.1 % of the length) is right in {c.success:.1%}, with {c.wrong_tips:.1%}"
-            " wrong tips."
+            f"The method {ADAPTIVE} refines modes until its own estimate of the error is within"
+            f" 0.1 % of the length: {c.success:.1%} success, {c.wrong_tips:.1%} wrong tips."
         )
     return _paragraph(*said)
 
@@ -175,9 +175,9 @@ def _is_failure(verdict: Verdict) -> bool:
 
 
 def _wrong_tips(rows: Rows) -> str:
-    """Where the shipped ones converged to what is not the truth, to be made again."""
+    """The cases that converged to another equilibrium than the true one."""
     lines = []
-    for method in (SHIPPED, "modes"):
+    for method in (ADAPTIVE, "modes"):
         wrong = [row for row in rows.get(method, []) if row.verdict.is_wrong_tip]
         lines.append(f"{method}: {len(wrong)}")
         for row in wrong[:MOST_LISTED]:

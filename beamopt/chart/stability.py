@@ -9,6 +9,7 @@ from pathlib import Path
 from beamopt.chart.journal import Journal
 from beamopt.chart.map_report import NAMES, write_map
 from beamopt.chart.sampling import METHODS, Sample, solve_sample
+from beamopt.errors import InputError
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.study.pool import processes
 
@@ -39,11 +40,15 @@ def run_stability(
 
     Raises
     ------
-    InputError : `out` holds something else, or can not be written.
+    InputError : `out` holds something else, or more samples, or can not be written.
     """
     claim_folder(out, JOURNAL, resume=resume)
     clear_leftovers(out, (JOURNAL, *NAMES))
     journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
+    more = max(journal.samples, default=-1) + 1
+    if more > samples:
+        said = f"at least {more}, as the map there has; or name another folder"
+        raise InputError("--samples", "", samples, said)
     missing = [index for index in range(samples) if index not in journal.samples]
     for sample in _solved(seed, missing, methods, workers):
         journal.add(sample)

@@ -18,7 +18,7 @@ __all__ = ["compared", "true_equilibrium"]
 
 MODES, FINER_MODES = 20, 32
 ELEMENTS = 128  # and twice as many where that is not enough
-SECONDS = 4.0  # that the elements may take
+MOST_ITERATIONS = 10_000  # of the elements; four seconds with `ELEMENTS` of them
 SAME = 0.005  # tips so little apart agree
 SAME_LOAD = 0.1  # of each other: shares of the load up to which there is an equilibrium
 ENDS = (RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED)
@@ -34,7 +34,7 @@ def true_equilibrium(rod: Rod, rest: FloatArray) -> Truth:
     (second order). Where one then is in trouble of its own, and the other one agrees with itself,
     that one is believed alone. Without an equilibrium both have to say so, and one of them why.
     """
-    follower, elements = StrainModes(direct=False), Elements(seconds=SECONDS)
+    follower, elements = StrainModes(direct=False), Elements(most_iterations=MOST_ITERATIONS)
     modes, coarse = follower.solve(rod, rest, MODES), elements.solve(rod, rest, ELEMENTS)
     first = compared(modes, coarse, rod.length)
     if first.known or RodStatus.CONVERGED not in (modes.status[0], coarse.status[0]):

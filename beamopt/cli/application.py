@@ -195,7 +195,7 @@ def export(
     out: Annotated[Path | None, typer.Option(help="Folder; NAME-export here if left out.")] = None,
     formats: Annotated[
         str | None,
-        typer.Option("--format", metavar="step,stl,svg,dxf", help="Some of them; all if left out."),
+        typer.Option("--format", metavar="step,stl,svg,dxf", help="All that it can if left out."),
     ] = None,
     cap: Annotated[
         float, typer.Option(metavar="MM", help="Closed plates at both ends; 0: open.")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -17,13 +19,15 @@ from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound_folder import claim_bound_folder, write_bound
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
+from beamopt.errors import InputError
 from beamopt.model import parse
 from beamopt.overrides import overridden
 from beamopt.scene import Pressures, Scene, load_scene
 from beamopt.scene_text import scene_text
-from beamopt.table import read_table
+from beamopt.table import Table, read_table
 from beamopt.target import COLUMNS, ONLY_OF_POINTS, SAME_PRESSURE, Target
 from beamopt.target_choice import TargetChoice
 from beamopt.workspace import pressure_grid
@@ -33,31 +37,45 @@ __all__ = ["bound_command", "gap_text"]
 NOTHING = 1e-12  # of H²: less than this is rounding
 
 
+class LengthSource(Enum):
+    """Where the length of a bare table's actuator comes from; the value is the text for people."""
+
+    REST = "the table's tip without pressure"
+    ASKED = "--set actuator.length"
+    DEFAULT = "the default: no tip without pressure says it; --set actuator.length"
+
+
 def bound_command(subject: str, out: Path | None, overrides: Sequence[str]) -> None:
     """Say how low L can be, whatever the section, and write it where asked."""
-    scene, notes = _scene_of(subject, overrides)
+    scene, notes, assumed = _scene_of(subject, overrides)
     target = scene.load_target()
     if out is not None:
         claim_bound_folder(out, scene)
     with _spinner() as say:
         found = certificate(scene, target, say)
     if out is not None:
-        write_bound(out, scene, target, found)
+        write_bound(out, scene, target, found, assumed)
     for note in (*notes, *target.warnings):
         console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
 
 
-def _scene_of(subject: str, overrides: Sequence[str]) -> tuple[Scene, tuple[str, ...]]:
-    """A scene; for a table or a design the default one with it as the target; and notes on it."""
+def _scene_of(
+    subject: str, overrides: Sequence[str]
+) -> tuple[Scene, tuple[str, ...], dict[str, Any]]:
+    """A scene; for a table or a design the default one with it as the target.
+
+    Returns it with notes on it, and what a table does not say and was assumed.
+    """
     path = Path(subject)
     kind = path.suffix.lower()
     if kind not in (".csv", ".json"):
-        return load_scene(subject, overrides), ()
+        return load_scene(subject, overrides), (), {}
     name = "".join(c if c.isalnum() or c in "-_" else "-" for c in path.stem) or "target"
     if kind == ".csv":
         return _scene_of_table(path, name, overrides)
     design = load_design(path)
+    say_findings(design)
     scene = Scene(
         name=name,
         actuator=design.actuator,
@@ -68,28 +86,63 @@ def _scene_of(subject: str, overrides: Sequence[str]) -> tuple[Scene, tuple[str,
         loads=design.loads,
         target=TargetChoice(kind="section", file=str(path.resolve())),
     )
-    return _with(scene, overrides), ()
+    return _with(scene, overrides), (), {}
 
 
 def _scene_of_table(
     path: Path, name: str, overrides: Sequence[str]
-) -> tuple[Scene, tuple[str, ...]]:
+) -> tuple[Scene, tuple[str, ...], dict[str, Any]]:
     """The default scene with a table as its target: of points, unless it is a workspace's."""
     table = read_table(path, COLUMNS)
     file = str(path.resolve())
+    asked = {text.partition("=")[0].strip() for text in overrides}
     usual = Scene(name=name, target=TargetChoice(kind="points", file=file))
+    usual, source = _with_length(usual, table, overrides)
+    if "actuator.length" in asked:
+        source = LengthSource.ASKED
     scene = _with(usual, overrides)
-    if any(text.partition("=")[0].strip() == "target.kind" for text in overrides):
-        return scene, ()
+    assumed, notes = _assumed(scene, source)
+    if "target.kind" in asked:
+        return scene, notes, assumed
     levels = scene.pressures.levels
     columns = [column for column in ONLY_OF_POINTS if column in table.header]
     if not columns and _is_workspace(table.stacked(["p1", "p2", "p3"]), levels):
-        return _with(usual, [*overrides, "target.kind=workspace"]), ()
+        return _with(usual, [*overrides, "target.kind=workspace"]), notes, assumed
     said = f"it has the columns {', '.join(columns)}"
     if not columns:
         listed = ", ".join(f"{level:g}" for level in levels)
         said = f"its rows are not the 27 combinations of {listed} kPa"
-    return scene, (f"taken as a table of points: {said}",)
+    return scene, (*notes, f"taken as a table of points: {said}"), assumed
+
+
+def _with_length(
+    usual: Scene, table: Table, overrides: Sequence[str]
+) -> tuple[Scene, LengthSource]:
+    """The scene with the length that the tip without pressure says, where that can be one."""
+    scene = _with(usual, overrides)
+    at_rest = ~table.stacked(["p1", "p2", "p3"]).any(axis=1)
+    if not at_rest.any() or scene.climb.model.straight_length is None:
+        return usual, LengthSource.DEFAULT
+    tips = scene.target.base.to_local(table.stacked(["x", "y", "z"])[at_rest])
+    try:
+        actuator = usual.actuator.model_copy(update={"length": float(tips[:, 2].mean())})
+    except InputError:
+        return usual, LengthSource.DEFAULT
+    return usual.model_copy(update={"actuator": actuator}), LengthSource.REST
+
+
+def _assumed(scene: Scene, source: LengthSource) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """What a table does not say, for `bound.json` and for people."""
+    length, grid, E = scene.actuator.length, scene.grid, scene.actuator.youngs_modulus
+    numbers = {
+        "length_mm": length,
+        "length_from": source.name.lower(),
+        "youngs_modulus_kPa": E,
+        "inner_radius_mm": grid.inner_radius,
+        "outer_radius_mm": grid.outer_radius,
+    }
+    ring = f"a ring of radii {grid.inner_radius:g} … {grid.outer_radius:g} mm, E = {E:g} kPa"
+    return {"assumed": numbers}, (f"length {length:g} mm ({source.value})", f"assumed: {ring}")
 
 
 def _is_workspace(pressures: FloatArray, levels: Sequence[float]) -> bool:

@@ -11,6 +11,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
 from beamopt.evolve.algorithm import Generation
@@ -19,10 +20,12 @@ from beamopt.judge import Status
 from beamopt.optimisation import optimize
 from beamopt.reach.reach import TOLERANCE
 from beamopt.refine.refine import StageRecord
-from beamopt.result import Optimisation
+from beamopt.result import EarlierRefinement, Optimisation
 from beamopt.scene import load_scene
 
 __all__ = ["optimize_command"]
+
+SHOWN = 0.5  # s; less is not worth a word
 
 
 def optimize_command(
@@ -81,6 +84,8 @@ def _report(result: Optimisation, folder: Path) -> None:
         lines.append(("no design", result.verdict.status.value))
     if result.refinement is not None:
         lines += refinement_lines(result.refinement, result.scene, result.bound)
+    if result.there not in (EarlierRefinement.NONE, EarlierRefinement.REPLACED):
+        lines.append(("note", result.there.value))
     lines += _rejected(result)
     lines.append(("time", _times(result)))
     lines.append(("files", f"{folder}/ ({', '.join(_worth_a_look(folder))}, …)"))
@@ -89,6 +94,9 @@ def _report(result: Optimisation, folder: Path) -> None:
     console.print(f"[bold]{result.scene.name}[/], seed {result.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
+    if result.verdict.status is Status.JUDGED:
+        refined = result.refinement
+        say_findings(result.best if refined is None else refined.design)
 
 
 def _found(result: Optimisation) -> list[tuple[str, str]]:
@@ -111,7 +119,9 @@ def _found(result: Optimisation) -> list[tuple[str, str]]:
 def _times(result: Optimisation) -> str:
     found = result.refinement
     refining = "" if found is None else f" searching, {found.seconds:.2f} s refining"
-    return f"{result.seconds:.2f} s{refining}"
+    compiling = result.timing.compiling
+    before = f" (and {compiling:.2f} s before, to compile)" if compiling >= SHOWN else ""
+    return f"{result.seconds:.2f} s{refining}{before}"
 
 
 def _total(result: Optimisation) -> list[tuple[str, str]]:
@@ -133,8 +143,7 @@ def _outline(result: Optimisation) -> list[tuple[str, str]]:
     """What a sealed section is, as against the raster that the search judged."""
     if not result.best.seal.rules.sealed:
         return []
-    faults = [("note", str(fault)) for fault in result.best.outline.faults]
-    return [("L of outline", f"{result.outline_loss:.6g} mm²"), *faults]
+    return [("L of outline", f"{result.outline_loss:.6g} mm²")]
 
 
 def _unit(result: Optimisation) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 import typer
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError
@@ -36,6 +37,7 @@ def reach_command(
         sys.stdout.write(paths_csv(found, [len(points)]))
     else:
         _print_table(path, found, statuses)
+    say_findings(design)
     outside = sum(status is not ReachStatus.REACHED for status in statuses)
     if outside:
         said = f"{outside} of {len(points)} points are not reached within {tolerance:g} mm"

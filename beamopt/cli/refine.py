@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,16 +10,19 @@ import typer
 
 from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.cli.bound import gap_text
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
 from beamopt.model import read_json
+from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
 from beamopt.refinement_folder import write_refined_design
+from beamopt.result import EarlierRefinement
 from beamopt.scene import Scene, load_scene
 
 __all__ = ["refine_command", "refinement_lines", "stages_shown"]
@@ -30,26 +33,30 @@ def refine_command(
 ) -> None:
     """Refine the best design of a run, or a design for a scene; say what that came to."""
     if subject.is_dir():
-        scene, found, bound = _refined_run(subject, scene_name, out, overrides)
+        scene, found, bound, there = _refined_run(subject, scene_name, out, overrides)
         folder = subject
     else:
         scene, found, bound, folder = _refined_file(subject, scene_name, out, overrides)
+        there = EarlierRefinement.NONE
     console.print(f"[bold]{scene.name}[/], seed {scene.search.seed}")
     lines = [*refinement_lines(found, scene, bound), ("time", f"{found.seconds:.2f} s")]
-    there = [
+    if there is EarlierRefinement.BETTER:
+        lines.append(("note", there.value))
+    files = [
         name
         for name in ("refined.json", "refined.png", "refined_paths.csv")
         if (folder / name).exists()
     ]
-    for name, text in (*lines, ("files", f"{folder}/ ({', '.join(there)}, …)")):
+    for name, text in (*lines, ("files", f"{folder}/ ({', '.join(files)}, …)")):
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
         raise typer.Exit(1)
+    say_findings(found.design)
 
 
 def _refined_run(
     run: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
-) -> tuple[Scene, Refinement, Certificate]:
+) -> tuple[Scene, Refinement, Certificate, EarlierRefinement]:
     for option, value in (("--scene", scene_name), ("--out", out)):
         if value is not None:
             said = "goes with a design file; a run folder has its scene, and gets the files"
@@ -67,19 +74,25 @@ def _refined_run(
         raise KeyboardInterrupt
     if result.refinement is None:
         raise InputError(run, "", None, f"no design to refine: {result.status.value}")
-    return scene, result.refinement, result.bound
+    return scene, result.refinement, result.bound, result.there
 
 
 def _check_ended(run: Path) -> None:
     """Refuse a run whose search would go on."""
     summary = run / "summary.json"
-    said = read_json(summary).get("status") if summary.exists() else "not ended"
-    if said in ("not ended", StopReason.INTERRUPTED.value, StopReason.SECONDS.value):
+    ended = _ended(read_json(summary)) if summary.exists() else None
+    if ended is None or ended.goes_on:
         allowed = (
             "a search that ended: go on with it by `beamopt optimize --resume`, or refine its "
             f"{run / 'best.json'} with --scene {run / 'scene.toml'}"
         )
-        raise InputError(summary, "status", said, allowed)
+        raise InputError(summary, "ended", "not ended" if ended is None else ended.value, allowed)
+
+
+def _ended(summary: Mapping[str, object]) -> StopReason | None:
+    """How a search ended by its summary; None where that does not say."""
+    name = summary.get("ended", OLD_STOP_REASONS.get(str(summary.get("status"))))
+    return StopReason.__members__.get(str(name))
 
 
 def _refined_file(
@@ -126,6 +139,5 @@ def refinement_lines(found: Refinement, scene: Scene, bound: Certificate) -> lis
     if scene.making.rules_set:
         lines.append(("refined R", f"{after.R:.6g} mm²   (before: {before.R:.6g})"))
     lines.append(("ratio", f"{refined.ratio:.3f}   (before: {refined.ratio_before:.3f})"))
-    lines += [("note", str(fault)) for fault in found.faults]
     judged = f"{refined.evaluations} sections judged, {refined.flips:,} flips proposed"
     return [*lines, ("refinement", judged)]

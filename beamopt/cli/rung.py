@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.climb import Climb
 from beamopt.design import load_design
@@ -26,5 +27,7 @@ def rung_command(subject: str, overrides: list[str]) -> None:
 def _climb(subject: str, overrides: list[str]) -> Climb:
     path = Path(subject)
     if path.is_dir() or path.suffix == ".json":
-        return load_design(design_file(path)).climb
+        design = load_design(design_file(path))
+        say_findings(design)
+        return design.climb
     return load_scene(subject, overrides).climb

@@ -8,6 +8,7 @@ import numpy as np
 from rich.style import Style
 from rich.text import Text
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
@@ -42,6 +43,7 @@ def show_command(path: Path, out: Path | None) -> None:
         legend.append(f" ■ supply {supply}", style=colour)
     console.print(legend)
     console.print(f"figure: {figure_path}", soft_wrap=True, markup=False)
+    say_findings(design)
 
 
 def _target(run: Path, design: Design) -> Target | None:

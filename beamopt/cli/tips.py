@@ -12,6 +12,7 @@ import typer
 from rich.table import Table
 
 from beamopt.arrays import FloatArray
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError, NoEquilibriumError
@@ -34,6 +35,7 @@ def tips_command(path: Path, combinations: Sequence[str], as_csv: bool) -> None:
         sys.stdout.write(tips_csv(pressures[has_tip], found.positions[has_tip]))
     else:
         _print_table(path, pressures, found)
+    say_findings(design)
     for at, status in zip(pressures, found.status, strict=True):
         if status is not RodStatus.CONVERGED:
             typer.echo(f"beamopt: {NoEquilibriumError(at, status)}", err=True)

@@ -18,12 +18,17 @@ __all__ = ["Generation", "GeneticAlgorithm", "Individual", "Stage"]
 
 
 class Stage(Enum):
-    """What the candidates asked for are; the value stands in the journal."""
+    """What the candidates asked for are; the value is the text shown to people."""
 
     INITIAL = "initial"
     OFFSPRING = "offspring"
     MUTANTS = "mutants"
     IMPROVED = "improved"
+
+    @property
+    def key(self) -> str:
+        """As the journal has it."""
+        return self.name.lower()
 
 
 @dataclass(frozen=True, slots=True)

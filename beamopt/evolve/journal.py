@@ -1,8 +1,9 @@
 """The append-only journal of a search: what was judged, in order, one line a batch.
 
 A journal holds verdicts, not genotypes: those follow from the scene by asking the algorithm again,
-and a digest of each says whether they are the same. A line that a kill cut off is dropped when the
-search goes on; everything before it is taken as it stands.
+and a digest of each says whether they are the same. Every line ends with a digest of the rest of
+it, which says whether the verdicts are those that were written; lines of beamopt-journal/1 have
+none. A line that a kill cut off is dropped when the search goes on.
 """
 
 from __future__ import annotations
@@ -19,11 +20,16 @@ from weakref import WeakSet
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.judge import Status, Verdict
+from beamopt.line_journal import with_digest, without_digest
 from beamopt.section.feature_points import FeaturePoints
 
 __all__ = ["Journal"]
 
-HEADER = b'{"schema":"beamopt-journal/1"}\n'
+HEADER = b'{"schema":"beamopt-journal/2"}\n'
+WITHOUT_DIGESTS = b'{"schema":"beamopt-journal/1"}\n'
+
+HEADERS = {HEADER.decode().rstrip(): True, WITHOUT_DIGESTS.decode().rstrip(): False}
+"""First lines, and whether the lines after it have digests."""
 
 FAILURES = {status.name for status in Status if status is not Status.JUDGED}
 
@@ -52,7 +58,7 @@ class Journal:
     """
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self.path = path
         self._stream = path.open("ab")
         _OPEN.add(self)
         try:
@@ -60,9 +66,10 @@ class Journal:
             self._lines = self._whole_lines()
             if not self._lines:
                 self._append(HEADER)
-            elif self._lines[0] != HEADER.decode().rstrip():
+            elif self._lines[0] not in HEADERS:
                 expected = f"must be {HEADER.decode().rstrip()}"
                 raise InputError(path, "line 1", self._lines[0], expected)
+            self._digests = not self._lines or HEADERS[self._lines[0]]
         except BaseException:
             self.close()
             raise
@@ -96,52 +103,65 @@ class Journal:
             except OSError:
                 if time.monotonic() > patience:
                     said = "another process is writing this run"
-                    raise InputError(self._path, "", None, said) from None
+                    raise InputError(self.path, "", None, said) from None
                 time.sleep(0.05)
             else:
                 return
 
     def _whole_lines(self) -> list[str]:
         """The lines of the file as it stands, after cutting off a last one that has no end."""
-        content = self._path.read_bytes()
+        content = self.path.read_bytes()
         whole = content[: content.rfind(b"\n") + 1]
-        if not whole and not HEADER.startswith(content):
-            raise InputError(self._path, "line 1", None, "is no journal")
+        if not whole and not any(one.startswith(content) for one in (HEADER, WITHOUT_DIGESTS)):
+            raise InputError(self.path, "line 1", None, "is no journal")
         if len(whole) < len(content):
-            os.truncate(self._path, len(whole))
+            os.truncate(self.path, len(whole))
         return whole.decode("utf-8", errors="replace").splitlines()
 
     def replay(self, search: GeneticAlgorithm) -> Iterator[list[Verdict]]:
         """The verdicts on record, each batch checked against what `search` asks for now."""
         for number, line in enumerate(self._lines[1:], 2):
-            verdicts = _verdicts(line, search)
+            verdicts = _verdicts(self._undigested(line), search)
             if verdicts is None:
                 raise InputError(
-                    self._path,
+                    self.path,
                     f"line {number}",
                     line,
                     f"not what this search judged in generation {search.generation} "
-                    f"({search.stage.value}); the journal was changed, or made by another version",
+                    f"({search.stage.value}): damaged, changed, or made by another version; "
+                    "cut the file off before the line to judge what follows again",
                 )
             yield verdicts
+
+    @property
+    def last_generation(self) -> int:
+        """The generation that the last line on record belongs to; 0 without any."""
+        record = _decoded(self._undigested(self._lines[-1])) if self._lines[1:] else None
+        return int(record["generation"]) if isinstance(record, dict) else 0
 
     def write(self, search: GeneticAlgorithm, verdicts: Sequence[Verdict]) -> None:
         """Append the verdicts on what `search` asks for; call it before telling them."""
         judged = zip(search.ask(), verdicts, strict=True)
         record: dict[str, object] = {
             "generation": search.generation,
-            "stage": search.stage.value,
+            "stage": search.stage.key,
             "judged": [_entry(points, verdict, search.rules_set) for points, verdict in judged],
         }
-        self._append(_line(record))
+        text = json.dumps(record, allow_nan=False, separators=(",", ":"))
+        self._append(((with_digest(text) if self._digests else text) + "\n").encode())
+
+    def _undigested(self, line: str) -> str:
+        """The text that a line was written with; empty where it is another one now."""
+        if not self._digests:
+            return line
+        try:
+            return without_digest(line) or ""
+        except ValueError:
+            return ""
 
     def _append(self, line: bytes) -> None:
         self._stream.write(line)
         self._stream.flush()
-
-
-def _line(record: dict[str, object]) -> bytes:
-    return (json.dumps(record, allow_nan=False, separators=(",", ":")) + "\n").encode()
 
 
 def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:
@@ -161,9 +181,9 @@ def _decoded(line: str) -> object:
 def _verdicts(line: str, search: GeneticAlgorithm) -> list[Verdict] | None:
     """The verdicts in a line; None where it does not belong to what `search` asks for."""
     record = _decoded(line)
-    if not isinstance(record, dict):
+    if not isinstance(record, dict) or record.keys() != {"generation", "stage", "judged"}:
         return None
-    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.value):
+    if (record.get("generation"), record.get("stage")) != (search.generation, search.stage.key):
         return None
     asked, judged = search.ask(), record.get("judged")
     if not isinstance(judged, list) or len(judged) != len(asked):

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
 from beamopt.evolve.improvement import Improvement
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason, why_stop
+from beamopt.evolve.variation import Variation
 from beamopt.judge import Judge, Status, judge_all
 from beamopt.scene import Scene
+from beamopt.timing import Timing
 
 __all__ = ["Ended", "run"]
 
@@ -22,12 +25,12 @@ class Ended:
     """How a search ended.
 
     status : why it stopped. history : one record a generation, the initial population first.
-    seconds : time it took.
+    timing : of what was judged now.
     """
 
     status: StopReason
     history: tuple[Generation, ...]
-    seconds: float
+    timing: Timing
 
 
 def run(
@@ -38,6 +41,7 @@ def run(
     executor: Executor | None = None,
     workers: int = 1,
     callback: Callable[[Generation], None] | None = None,
+    ready: Callable[[], None] | None = None,
 ) -> Ended:
     """Ask, judge and tell until there is a reason to stop.
 
@@ -49,13 +53,14 @@ def run(
     executor, workers : judge each batch in `workers` parts on this executor; the result does not
         depend on either.
     callback : called after every generation with its record. KeyboardInterrupt, raised there or by
-        Ctrl-C, ends the search with what it has, once it has a first population.
+        Ctrl-C, ends the search with what it has, once it has a first population; while the
+        journal is read it is raised again.
+    ready : called once the journal is read and found to be this search's.
 
     Raises
     ------
-    InputError : the journal is not this search's.
+    InputError : the journal is not this search's, or goes beyond a reason to stop.
     """
-    started = asking = time.perf_counter()
     improvement = Improvement(judge, scene) if scene.search.improved_share > 0 else None
     search = GeneticAlgorithm(scene, improvement)
     history: list[Generation] = []
@@ -69,13 +74,17 @@ def run(
         return why_stop(scene, search, history, seconds)
 
     reason: StopReason | None = None
+    for verdicts in journal.replay(search) if journal is not None else ():
+        if journal is not None and reason is not None:
+            raise _beyond(journal, scene, reason, history)
+        # what was judged already takes none of the time that this call may take
+        reason = told(search.tell(verdicts), 0.0)
+    if ready is not None:
+        ready()
+    before = search.evaluations
+    compiling = _compiling(judge, improvement, scene, search) if reason is None else 0.0
+    asking = time.perf_counter()
     try:
-        for verdicts in journal.replay(search) if journal is not None else ():
-            # what was judged already takes none of the time that this call may take
-            reason = told(search.tell(verdicts), 0.0)
-            if reason is not None:
-                break
-        asking = time.perf_counter()
         while reason is None:
             verdicts = judge_all(judge, search.ask(), executor, workers)
             if journal is not None:
@@ -87,4 +96,42 @@ def run(
     status = reason or StopReason.INTERRUPTED
     if reason is not None and history[-1].best_ever.verdict.status is not Status.JUDGED:
         status = StopReason.NOTHING
-    return Ended(status, tuple(history), time.perf_counter() - started)
+    judged = search.evaluations - before
+    seconds = time.perf_counter() - asking if judged else 0.0
+    return Ended(status, tuple(history), Timing(seconds, judged, compiling))
+
+
+def _compiling(
+    judge: Judge, improvement: Improvement | None, scene: Scene, search: GeneticAlgorithm
+) -> float:
+    """Run every kernel once, so that none is compiled while sections are timed; returns seconds."""
+    started = time.perf_counter()
+    candidates = search.ask()[:1]
+    judge(candidates)
+    Variation(scene).warm_up()
+    if improvement is not None:
+        improvement(candidates[0], 0, 0)
+    return time.perf_counter() - started
+
+
+KEYS = {
+    StopReason.GENERATIONS: "search.generations",
+    StopReason.EVALUATIONS: "stop.evaluations",
+    StopReason.STALL: "stop.stall",
+    StopReason.LOSS: "stop.loss",
+}
+"""The key that a search stops for; a time is counted anew."""
+
+
+def _beyond(
+    journal: Journal, scene: Scene, reason: StopReason, history: Sequence[Generation]
+) -> InputError:
+    """What to raise where a search was given less than it had before."""
+    key = KEYS[reason]
+    table, _, name = key.partition(".")
+    value = getattr(getattr(scene, table), name)
+    said = (
+        f"the search there ended after generation {journal.last_generation}; this would end it "
+        f"after {history[-1].index}: ask for as much, or name another folder"
+    )
+    return InputError(journal.path, key, value, said)

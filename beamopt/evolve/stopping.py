@@ -22,6 +22,11 @@ class StopReason(Enum):
     NOTHING = "no candidate could be judged"
     INTERRUPTED = "interrupted; --resume goes on"
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether the search is not over: the same command with --resume continues it."""
+        return self in (StopReason.INTERRUPTED, StopReason.SECONDS)
+
 
 def why_stop(
     scene: Scene, search: GeneticAlgorithm, history: Sequence[Generation], seconds: float

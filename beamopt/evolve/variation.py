@@ -30,6 +30,12 @@ class Variation:
         """What every candidate is made equal to; None where nothing is asked for."""
         return self.scene.making.repair(self.scene.grid.build())
 
+    def warm_up(self) -> None:
+        """Make a mutant of offspring and drop it: every kernel is compiled then."""
+        rng = np.random.default_rng(0)
+        one, _ = self.offspring(self.initial(rng), self.initial(rng), rng)
+        self.mutant(one, rng)
+
     def initial(self, rng: np.random.Generator) -> FeaturePoints:
         """A random genotype; a symmetric one has its share of them in each part."""
         symmetry, rules = self.symmetry, self.scene.section

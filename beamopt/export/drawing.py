@@ -13,16 +13,18 @@ from beamopt.design import Design
 from beamopt.export.faces import Contour, Face, SectionFaces, polygon_of
 from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import PolarGrid
+from beamopt.section.seal import SealRules
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
-__all__ = ["SCALE_BAR", "Drawing", "Label", "section_drawing"]
+__all__ = ["SCALE_BAR", "Drawing", "Label", "is_thinner", "section_drawing"]
 
 SCALE_BAR = 10.0
 """mm; the bar that a ruler is held against."""
 
 LARGEST, SMALLEST = 5.0, 0.8  # mm, heights of the numbers in chambers
+SAME = 0.995  # of a skin or wall that was asked for; less is said
 LONGEST = 60  # characters of a name or a note
 
 
@@ -61,6 +63,11 @@ class Drawing:
     lines: tuple[str, ...]
 
 
+def is_thinner(least: float | None, asked: float) -> bool:
+    """Whether a least skin or wall is so much thinner than asked that a person should know."""
+    return least is not None and least < SAME * asked
+
+
 def section_drawing(
     design: Design, faces: SectionFaces, name: str, sagitta: float, cap: float = 0.0
 ) -> Drawing:
@@ -88,7 +95,7 @@ def section_drawing(
             *_origin(design),
             _size(design, grid, cap),
             _areas(faces),
-            _thickness(faces, skin, wall),
+            _thickness(faces, skin, wall, design.seal.rules),
             f"seen from the tip; edges within {sagitta:g} mm of the smooth section",
         ),
     )
@@ -151,18 +158,30 @@ def _size(design: Design, grid: PolarGrid, cap: float) -> str:
 
 def _areas(faces: SectionFaces) -> str:
     material = sum(face.area for face in faces.pieces)
-    supplies = [f"{supply}: {faces.chamber_area(supply):.1f}" for supply in SUPPLIES]
-    return f"material {material:.1f} mm², chambers {', '.join(supplies)} mm²"
+    supplies = [f"{supply}: {_area(faces.chamber_area(supply))}" for supply in SUPPLIES]
+    return f"material {_area(material)} mm², chambers {', '.join(supplies)} mm²"
 
 
-def _thickness(faces: SectionFaces, skin: float | None, wall: float | None) -> str:
+def _area(area: float) -> str:
+    return f"{area:.1f}" if area >= 10 or area == 0 else f"{area:.3g}"
+
+
+def _thickness(
+    faces: SectionFaces, skin: float | None, wall: float | None, rules: SealRules
+) -> str:
     if faces.is_open:
         return "chambers are open to a surface or to each other: no least skin or wall"
     parts = [
-        "no chambers" if skin is None else f"least skin {skin:.2f} mm",
-        "" if wall is None else f"least wall between chambers {wall:.2f} mm",
+        "no chambers" if skin is None else f"least skin {skin:.2f} mm{_asked(skin, rules.skin)}",
+        ""
+        if wall is None
+        else f"least wall between chambers {wall:.2f} mm{_asked(wall, rules.wall)}",
     ]
     return ", ".join(part for part in parts if part)
+
+
+def _asked(least: float, asked: float) -> str:
+    return f" (asked {asked:g})" if is_thinner(least, asked) else ""
 
 
 def _short(value: object) -> str:

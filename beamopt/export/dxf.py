@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts import Modelspace
 
-__all__ = ["LAYERS", "dxf_bytes", "require_ezdxf"]
+__all__ = ["LAYERS", "NEEDS_EZDXF", "dxf_bytes", "require_ezdxf"]
 
 LAYERS = ("MATERIAL", *(f"SUPPLY_{supply}" for supply in SUPPLIES))
 """By type: loops of material, and of each supply's chambers. Text stands on TEXT."""
 
-INSTALL = "needs ezdxf: pip install 'beamopt[export]', or leave dxf out of --format"
+NEEDS_EZDXF = "needs ezdxf: pip install 'beamopt[export]'"
 MILLIMETRES = 4  # as $INSUNITS has it
 TEXT = 3.0  # mm, height of letters
 BELOW = 6.0  # mm from the section to the text
@@ -40,7 +40,7 @@ def require_ezdxf() -> None:
     InputError : ezdxf is not installed; says what to install.
     """
     if not is_installed("ezdxf"):
-        raise InputError("--format", "", "dxf", INSTALL)
+        raise InputError("--format", "", "dxf", f"{NEEDS_EZDXF}, or leave dxf out of --format")
 
 
 def dxf_bytes(drawing: Drawing) -> bytes:

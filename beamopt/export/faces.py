@@ -13,7 +13,7 @@ from beamopt.errors import InputError
 from beamopt.outline.faults import FaultKind
 from beamopt.outline.green import loop_integrals
 from beamopt.outline.outline import Outline
-from beamopt.outline.ring import fine_sagitta
+from beamopt.outline.ring import USUAL_RADIUS, fine_sagitta
 from beamopt.section.feature_points import MATERIAL, SUPPLIES
 from beamopt.section.grid import PolarGrid
 
@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 __all__ = ["Contour", "Face", "SectionFaces", "polygon_of", "section_faces"]
 
 SHORTEST = 1e-4
-"""mm; vertices nearer to each other than this are one: no kernel tells shorter edges from none."""
+"""mm at an outer radius of 25; vertices nearer to each other than this are one: no kernel tells
+shorter edges from none."""
 
-LATTICE = 1e-6  # mm, that lines are snapped to where they touch themselves
+LATTICE = 1e-6  # mm at an outer radius of 25, that lines are snapped to where they touch themselves
 
 SMALLEST = 1e-4
-"""mm²; what is smaller is a crumb of clipping and no hole or face."""
+"""mm² at an outer radius of 25; what is smaller is a crumb of clipping and no hole or face."""
 
 REFUSED = (FaultKind.INVALID, FaultKind.NO_MATERIAL)
 
@@ -128,21 +129,22 @@ def section_faces(outline: Outline, grid: PolarGrid, sagitta: float) -> SectionF
             raise InputError("design", "", None, f"no solid can be made of it: {fault}")
     is_open = any(fault.status is FaultKind.UNSEALED for fault in outline.faults)
     slack = 2 * fine_sagitta(grid) + (0.0 if is_open else 1.1 * sagitta)
+    unit = grid.outer_radius / USUAL_RADIUS
     pieces: list[Face] = []
     for piece in outline.pieces:
         contours = [
-            _surface(loop.points, grid, slack)
+            _surface(loop.points, grid, slack, unit)
             if loop.supply == MATERIAL
-            else Contour(_clean(loop.points))
+            else Contour(_clean(loop.points, unit))
             for loop in piece.loops
         ]
         name = f"body-{len(pieces) + 1}" if pieces else "body"
-        pieces.append(Face(name, MATERIAL, _without_crumbs(contours)))
+        pieces.append(Face(name, MATERIAL, _without_crumbs(contours, unit)))
     chambers = []
     for supply in SUPPLIES:
         for number, chamber in enumerate(outline.chambers_of(supply), 1):
-            loops = [Contour(_clean(loop)) for loop in (chamber.exterior, *chamber.holes)]
-            chambers.append(Face(f"core-{supply}-{number}", supply, _without_crumbs(loops)))
+            loops = [Contour(_clean(loop, unit)) for loop in (chamber.exterior, *chamber.holes)]
+            chambers.append(Face(f"core-{supply}-{number}", supply, _without_crumbs(loops, unit)))
     solid = [tuple(f for f in faces if f.contours) for faces in (pieces, chambers)]
     found = SectionFaces(solid[0], solid[1], is_open)
     _check(found)
@@ -157,7 +159,7 @@ def polygon_of(contours: Sequence[Contour]) -> Polygon:
     return shapely.Polygon(exterior, holes)
 
 
-def _surface(points: FloatArray, grid: PolarGrid, slack: float) -> Contour:
+def _surface(points: FloatArray, grid: PolarGrid, slack: float, unit: float) -> Contour:
     """A free surface, as the ring's circle where no vertex and no edge is farther off than `slack`.
 
     The edges count too: a straight cut through the ring may have both its ends on the circle.
@@ -166,24 +168,25 @@ def _surface(points: FloatArray, grid: PolarGrid, slack: float) -> Contour:
         radius = grid.outer_radius if loop_integrals(points)[0] > 0 else grid.inner_radius
         middles = (points + np.roll(points, -1, axis=0)) / 2
         nearest, farthest = (np.hypot(*middles.T).min(), np.hypot(*points.T).max())
-        if radius - slack <= nearest and farthest <= radius * (1 + 1e-9):
+        if radius - slack <= nearest and farthest <= radius + slack:
             return Contour(points, radius, True)
-    return Contour(_clean(points), None, True)
+    return Contour(_clean(points, unit), None, True)
 
 
-def _clean(points: FloatArray) -> FloatArray:
+def _clean(points: FloatArray, unit: float = 1.0) -> FloatArray:
     """Without vertices that stand where the one before stands, and without slits of no width."""
+    shortest = SHORTEST * unit
     while len(points) > 2:
         before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
-        repeated = np.hypot(*(points - before).T) < SHORTEST
-        spike = np.hypot(*(after - before).T) < SHORTEST
+        repeated = np.hypot(*(points - before).T) < shortest
+        spike = np.hypot(*(after - before).T) < shortest
         if not (repeated | spike).any():
             break
         points = points[~repeated] if repeated.any() else points[~spike]
-    return _without_slits(points)
+    return _without_slits(points, unit)
 
 
-def _without_slits(points: FloatArray) -> FloatArray:
+def _without_slits(points: FloatArray, unit: float) -> FloatArray:
     """A line that comes back to where it was, as between drawn chambers side by side, snapped.
 
     Where that leaves more than one part the line stays as it is.
@@ -191,19 +194,19 @@ def _without_slits(points: FloatArray) -> FloatArray:
     import shapely
     from scipy.spatial import cKDTree
 
-    if len(points) < 3 or not cKDTree(points).query_pairs(SHORTEST):
+    if len(points) < 3 or not cKDTree(points).query_pairs(SHORTEST * unit):
         return points
-    snapped = shapely.get_parts(shapely.set_precision(shapely.Polygon(points), LATTICE))
-    parts = [part for part in snapped if part.area > SMALLEST]
+    snapped = shapely.get_parts(shapely.set_precision(shapely.Polygon(points), LATTICE * unit))
+    parts = [part for part in snapped if part.area > SMALLEST * unit**2]
     if len(parts) != 1 or len(parts[0].interiors):
         return points
     turned = shapely.orient_polygons(parts[0], exterior_cw=loop_integrals(points)[0] < 0)
     return np.asarray(shapely.get_coordinates(turned.exterior)[:-1])
 
 
-def _without_crumbs(contours: Sequence[Contour]) -> tuple[Contour, ...]:
+def _without_crumbs(contours: Sequence[Contour], unit: float) -> tuple[Contour, ...]:
     """No hole, and no face, that is too small to be one."""
-    whole = [one for one in contours if len(one.points) > 2 and abs(one.area) > SMALLEST]
+    whole = [one for one in contours if len(one.points) > 2 and abs(one.area) > SMALLEST * unit**2]
     return tuple(whole) if whole and whole[0] is contours[0] else ()
 
 
@@ -211,9 +214,9 @@ def _check(faces: SectionFaces) -> None:
     import shapely
 
     for face in (*faces.pieces, *faces.chambers):
-        reason = shapely.is_valid_reason(polygon_of(face.contours))
-        if reason != "Valid Geometry":
-            said = f"no solid can be made of it: {reason.lower()}"
+        polygon = polygon_of(face.contours)
+        if not polygon.is_valid:
+            said = f"no solid can be made of it: {shapely.is_valid_reason(polygon).lower()}"
             raise InputError("design", face.name, None, said)
     if not faces.pieces:
         raise InputError("design", "", None, "no material")

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from beamopt.design import Design
 from beamopt.export.bodies import Solid
-from beamopt.export.drawing import Drawing
+from beamopt.export.drawing import Drawing, is_thinner
 from beamopt.export.faces import SectionFaces
-from beamopt.outline.faults import Fault
+from beamopt.outline.faults import Fault, summaries
 from beamopt.section.feature_points import SUPPLIES
 
 __all__ = ["SCHEMA", "export_record", "notes_on"]
@@ -41,6 +41,8 @@ def export_record(
         "sagitta_mm": sagitta,
         "least_skin_mm": drawing.least_skin,
         "least_wall_mm": drawing.least_wall,
+        "asked_skin_mm": design.seal.skin,
+        "asked_wall_mm": design.seal.wall,
         "area_mm2": _areas(faces),
         "solids": [
             {"assembly": assembly} | _measures(solid)
@@ -48,12 +50,14 @@ def export_record(
             for solid in parts
         ],
         "files": [{"name": file, "bytes": len(content)} for file, content in files.items()],
-        "notes": list(notes_on(design, faults)),
+        "notes": list(notes_on(design, drawing, sagitta, faults)),
         "faults": [str(fault) for fault in faults],
     }
 
 
-def notes_on(design: Design, faults: Iterable[Fault]) -> tuple[str, ...]:
+def notes_on(
+    design: Design, drawing: Drawing, sagitta: float, faults: Iterable[Fault]
+) -> tuple[str, ...]:
     """What a person should know before making it: what the files leave out, what is wrong."""
     notes = []
     if design.rod.segments:
@@ -61,23 +65,24 @@ def notes_on(design: Design, faults: Iterable[Fault]) -> tuple[str, ...]:
         notes.append(f"one of {count} segments' sections, extruded over the whole length")
     if any(design.rod.rest_curvature):
         notes.append("its mould is curved (rod.rest_curvature); the files hold it straight")
-    return (*notes, *_faults(design, faults))
-
-
-def _faults(design: Design, faults: Iterable[Fault]) -> Iterator[str]:
-    """One line: every kind, the worst first, with how often it is found and its first place."""
-    kinds: dict[str, list[Fault]] = {}
-    for fault in faults:
-        kinds.setdefault(fault.status.value, []).append(fault)
-    named = "; ".join(
-        f"{kind} ({len(found)} places, first: {found[0]})" if len(found) > 1 else str(found[0])
-        for kind, found in kinds.items()
-    )
     if not design.seal.rules.sealed:
-        said = "not sealed, chambers may be open to a surface or have no wall"
-        yield f"{said}: {named or 'none is open, walls are not measured'}"
-    elif named:
-        yield named
+        notes.append("not sealed: chambers may be open or have no wall, walls are not measured")
+    return (*notes, *_thinner(design, drawing, sagitta), *summaries(faults))
+
+
+def _thinner(design: Design, drawing: Drawing, sagitta: float) -> Iterator[str]:
+    """One line where straight edges leave less of a skin or a wall than was asked for."""
+    named = (
+        ("skin", drawing.least_skin, design.seal.skin),
+        ("wall between chambers", drawing.least_wall, design.seal.wall),
+    )
+    thin = [
+        f"least {name} {least:.3f} mm, asked {asked:g}"
+        for name, least, asked in named
+        if is_thinner(least, asked)
+    ]
+    if thin:
+        yield f"{'; '.join(thin)}: straight edges are up to {sagitta:g} mm off the smooth section"
 
 
 def _areas(faces: SectionFaces) -> dict[str, object]:

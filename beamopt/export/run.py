@@ -11,22 +11,22 @@ from beamopt.design import Design
 from beamopt.errors import InputError
 from beamopt.export.bodies import BASE_THICKNESS, Solid, body_solids, mould_solids
 from beamopt.export.drawing import Drawing, section_drawing
-from beamopt.export.dxf import dxf_bytes, require_ezdxf
+from beamopt.export.dxf import NEEDS_EZDXF, dxf_bytes, require_ezdxf
 from beamopt.export.faces import section_faces
 from beamopt.export.record import SCHEMA, export_record, notes_on
-from beamopt.export.step import require_gmsh, step_text
+from beamopt.export.step import NEEDS_GMSH, is_installed, require_gmsh, step_text
 from beamopt.export.stl import stl_bytes
 from beamopt.export.svg import svg_text
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import read_json
 from beamopt.outline.build import build_outline
+from beamopt.outline.ring import usual_sagitta
 from beamopt.provenance import provenance
 
 __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
 
 FORMATS = ("step", "stl", "svg", "dxf")
-SAGITTA = 0.04  # mm, as `Design.outline` has it
 THICKEST, COARSEST = 1000.0, 1.0  # mm
 MARKER = "export.json"
 FILES = {
@@ -46,7 +46,7 @@ PACKAGES = ("shapely", "gmsh", "ezdxf")
 class ExportOptions:
     """What to export, and how.
 
-    formats : any of "step", "stl", "svg", "dxf".
+    formats : any of "step", "stl", "svg", "dxf"; None for all that installed packages can write.
     cap : thickness of a closed plate at each end of the body [mm]; 0 leaves chambers open there.
     tolerance : how far edges may be from the smooth section [mm]; None takes the design's own
         outline, whose area and moments are the beam's.
@@ -57,14 +57,15 @@ class ExportOptions:
     InputError : no such format, or a thickness or tolerance that can not be.
     """
 
-    formats: tuple[str, ...] = FORMATS
+    formats: tuple[str, ...] | None = None
     cap: float = 0.0
     tolerance: float | None = None
     base_thickness: float = BASE_THICKNESS
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.formats if name not in FORMATS]
-        if unknown or not self.formats:
+        formats = FORMATS if self.formats is None else self.formats
+        unknown = [name for name in formats if name not in FORMATS]
+        if unknown or not formats:
             said = ", ".join(unknown) or "nothing"
             raise InputError("--format", "", said, f"any of {','.join(FORMATS)}")
         if not (math.isfinite(self.cap) and 0 <= self.cap <= THICKEST):
@@ -101,22 +102,24 @@ def export_design(
 
     Raises
     ------
-    InputError : a package is missing, the section's polygons are invalid, caps were asked for where
-        chambers are open, or the folder holds what is not an export of this name.
+    InputError : a package is missing for a format that was named, the section's polygons are
+        invalid, caps were asked for where chambers are open, or the folder holds what is not an
+        export of this name.
     """
     options = options or ExportOptions()
-    _require_packages(options)
+    formats, left_out = _formats(options)
     grid, length = design.grid.build(), design.actuator.length
-    sagitta, outline = SAGITTA, design.outline
+    sagitta, outline = usual_sagitta(grid), design.outline
     if options.tolerance is not None:
         sagitta = options.tolerance
         outline = build_outline(grid, design.source, design.seal.rules, sagitta)
+    findings = design.findings_on(outline)
     faces = section_faces(outline, grid, sagitta)
     body = body_solids(faces, length, options.cap)
     mould = mould_solids(faces, grid, length, sagitta, options.base_thickness)
     drawing = section_drawing(design, faces, name, sagitta, options.cap)
     _check_owner(folder, name)
-    files = dict(_contents(drawing, body, mould, options))
+    files = dict(_contents(drawing, body, mould, formats))
     record = export_record(
         name,
         design,
@@ -125,18 +128,26 @@ def export_design(
         files,
         sagitta=sagitta,
         cap=options.cap,
-        faults=outline.faults,
+        faults=findings,
     )
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
-    return Exported(folder, sizes, notes_on(design, outline.faults))
+    notes = notes_on(design, drawing, sagitta, findings)
+    return Exported(folder, sizes, (*left_out, *notes))
 
 
-def _require_packages(options: ExportOptions) -> None:
-    if "step" in options.formats:
-        require_gmsh()
-    if "dxf" in options.formats:
-        require_ezdxf()
+def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The formats to write, and a line on each that needs a package which is not installed."""
+    if options.formats is not None:
+        if "step" in options.formats:
+            require_gmsh()
+        if "dxf" in options.formats:
+            require_ezdxf()
+        return options.formats, ()
+    needs = {"step": ("gmsh", NEEDS_GMSH), "dxf": ("ezdxf", NEEDS_EZDXF)}
+    missing = {form: said for form, (name, said) in needs.items() if not is_installed(name)}
+    left_out = tuple(f"{form} is left out: {said}" for form, said in missing.items())
+    return tuple(form for form in FORMATS if form not in missing), left_out
 
 
 def _check_owner(folder: Path, name: str) -> None:
@@ -154,7 +165,7 @@ def _check_owner(folder: Path, name: str) -> None:
 
 
 def _contents(
-    drawing: Drawing, body: tuple[Solid, ...], mould: tuple[Solid, ...], options: ExportOptions
+    drawing: Drawing, body: tuple[Solid, ...], mould: tuple[Solid, ...], formats: tuple[str, ...]
 ) -> Iterator[tuple[str, bytes]]:
     title = drawing.title
     makers = {
@@ -166,7 +177,7 @@ def _contents(
         "section.dxf": lambda: dxf_bytes(drawing),
     }
     for file, form in FILES.items():
-        if form in options.formats:
+        if form in formats:
             yield file, makers[file]()
 
 

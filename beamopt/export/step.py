@@ -16,12 +16,12 @@ from beamopt.errors import InputError
 from beamopt.export.bodies import Solid
 from beamopt.export.faces import Contour
 
-__all__ = ["require_gmsh", "step_text"]
+__all__ = ["NEEDS_GMSH", "is_installed", "require_gmsh", "step_text"]
 
 SECONDS = 300.0  # time limit of the kernel
 VOLUME_TOLERANCE = 1e-6  # of a solid's volume, between the kernel's and the contours'
 KERNEL = Path(__file__).with_name("kernel.py")
-INSTALL = "needs gmsh: pip install 'beamopt[fem]', or leave step out of --format"
+NEEDS_GMSH = "needs gmsh: pip install 'beamopt[fem]'"
 SOLID = r"(MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(''"
 DATE = "2000-01-01T00:00:00"  # a file's bytes depend on what is in it alone
 
@@ -34,7 +34,7 @@ def require_gmsh() -> None:
     InputError : gmsh is not installed; says what to install.
     """
     if not is_installed("gmsh"):
-        raise InputError("--format", "", "step", INSTALL)
+        raise InputError("--format", "", "step", f"{NEEDS_GMSH}, or leave step out of --format")
 
 
 def is_installed(package: str) -> bool:

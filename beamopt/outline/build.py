@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,16 +11,24 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.outline.cells import regions as cell_regions
 from beamopt.outline.cells import territories
-from beamopt.outline.drawn import drawn_regions
-from beamopt.outline.faults import Fault, FaultKind
-from beamopt.outline.inspection import TOUCH, contacts, nearest, thicknesses, topology, worst_first
+from beamopt.outline.drawn import drawing_faults, drawn_regions, solid
+from beamopt.outline.faults import Fault, FaultKind, worst_first
+from beamopt.outline.inspection import (
+    TOUCH,
+    contacts,
+    nearest,
+    pinches,
+    thicknesses,
+    topology,
+)
 from beamopt.outline.outline import Chamber, Loop, Outline, Piece
 from beamopt.outline.resampling import resample
-from beamopt.outline.ring import fine_sagitta, ring_polygon
+from beamopt.outline.ring import USUAL_RADIUS, fine_sagitta, ring_polygon, usual_sagitta
 from beamopt.outline.smoothing import Region, loops_of, parts_of, sealed_chambers
-from beamopt.section.drawing import Shape
+from beamopt.section.cell_owners import points_with_cells
+from beamopt.section.drawing import Circle, Shape
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
-from beamopt.section.grid import PolarGrid
+from beamopt.section.grid import THINNEST, PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.seal import SealRules
 
@@ -29,9 +38,10 @@ if TYPE_CHECKING:
 __all__ = ["SLACK", "build_outline"]
 
 SLACK = 0.02
-"""mm; skins, walls and necks may be thinner than asked by this and twice the sagitta: chords of
-both sides cut into them by up to one sagitta each."""
+"""mm at an outer radius of 25; skins, walls and necks may be thinner than asked by this and twice
+the sagitta: vertices of both sides stand out into them by up to one sagitta each."""
 
+LATTICE = 2.0**-31  # mm; lengths at the usual radius are rounded to this: the same at any size
 TRIES = 4  # at resampling, each with a quarter of the sagitta
 
 
@@ -39,7 +49,7 @@ def build_outline(
     grid: PolarGrid,
     source: FeaturePoints | Sequence[Shape],
     rules: SealRules,
-    sagitta: float = 0.04,
+    sagitta: float | None = None,
     *,
     inspected: bool = True,
 ) -> Outline:
@@ -48,21 +58,79 @@ def build_outline(
     Without a skin nothing is changed: chambers are the Voronoi cells or the drawn shapes as they
     are, clipped to the ring, and `rules.wall` is only checked.
 
-    sagitta : how far edges may be from the smooth outline [mm]; less where walls are thin.
+    Edges are straight; the polygons that stand for curves have the curves' area. All is done in a
+    section of 25 mm outer radius and then scaled, so that a section has one shape at every size.
+
+    sagitta : how far edges may be from the smooth outline [mm]; less where walls are thin. None
+        takes 0.0016 of the outer radius: 0.04 mm at 25 mm.
     inspected : whether skins, walls and necks of the polygons are measured.
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis, a sagitta that is not positive.
+    ValueError : a feature point that has a cell is farther than 4·10⁶ outer radii from the axis, or
+        the sagitta is not positive.
     """
+    size = grid.outer_radius / USUAL_RADIUS
+    sagitta = usual_sagitta(grid) if sagitta is None else sagitta
     if not 0 < sagitta < np.inf:
         raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
+    if isinstance(source, FeaturePoints):
+        source = points_with_cells(grid, source)
+    usual = _at_usual_size(grid, source, rules, size)
+    return _build(*usual, sagitta / size, inspected).scaled(size)
+
+
+def _at_usual_size(
+    grid: PolarGrid, source: FeaturePoints | Sequence[Shape], rules: SealRules, size: float
+) -> tuple[PolarGrid, FeaturePoints | Sequence[Shape], SealRules]:
+    """The same section with an outer radius of 25 mm; lengths rounded, so that sizes agree."""
+    inner, skin, wall, rounding = (
+        _usual(length, size)
+        for length in (grid.inner_radius, rules.skin, rules.wall, rules.rounding)
+    )
+    thinnest = USUAL_RADIUS - THINNEST * USUAL_RADIUS
+    ring = replace(grid, inner_radius=min(inner, thinnest), outer_radius=USUAL_RADIUS)
+    area = rules.smallest_chamber / size**2
+    kept = SealRules(skin, wall, rounding, area, rules.remove_islands)
+    if isinstance(source, FeaturePoints):
+        x, y = (np.rint(a / size / LATTICE) * LATTICE for a in (source.x, source.y))
+        return ring, FeaturePoints(x, y, source.type), kept
+    return ring, [_usual_shape(shape, size) for shape in source], kept
+
+
+def _usual(length: float, size: float) -> float:
+    return round(length / size / LATTICE) * LATTICE
+
+
+def _usual_shape(shape: Shape, size: float) -> Shape:
+    if isinstance(shape, Circle):
+        x, y = (_usual(value, size) for value in shape.center)
+        return Circle(shape.supply, (x, y), max(_usual(shape.radius, size), LATTICE))
+    inner, outer = (_usual(radius, size) for radius in shape.r)
+    corner = min(_usual(shape.corner, size), max(outer - inner, LATTICE) / 2)
+    return replace(shape, r=(inner, max(outer, inner + LATTICE)), corner=corner)
+
+
+def _build(
+    grid: PolarGrid,
+    source: FeaturePoints | Sequence[Shape],
+    rules: SealRules,
+    sagitta: float,
+    inspected: bool,
+) -> Outline:
     import shapely
 
     ring = ring_polygon(grid)
     smooth = _smooth(grid, source, rules, ring)
     moments = _smooth_moments(grid, smooth)
     faults = contacts(smooth, ring)
+    if not (rules.sealed or isinstance(source, FeaturePoints)):
+        faults += pinches(smooth)
+    notices = (
+        []
+        if isinstance(source, FeaturePoints)
+        else drawing_faults(source, ring, fine_sagitta(grid), smooth)
+    )
     if faults:
         # arcs of chambers along surfaces leave crescents that are no material
         pieces = tuple(
@@ -70,16 +138,16 @@ def build_outline(
             for piece in _pieces(ring, smooth)
             if 2 * piece.area > TOUCH * shapely.length(shapely.LinearRing(piece.exterior.points))
         )
-        faults += topology(pieces, smooth)
-        return Outline(pieces, _chambers(smooth), worst_first(faults), moments)
-    unit = grid.outer_radius / 25
+        faults += topology(pieces, smooth) + notices
+        chambers = _chambers(smooth)
+        return Outline(pieces, chambers, worst_first(faults), moments, grid.outer_radius)
     # an eighth of the thinnest wall, so that chords of its two sides can not meet
     fine = min(sagitta, nearest(smooth, ring, 8 * sagitta) / 8)
     if grid.inner_radius > 0:
         fine = min(fine, (grid.outer_radius - grid.inner_radius) / 8)
     for _ in range(TRIES):
-        coarse_ring = _resampled(ring, fine, unit)
-        regions = tuple(tuple(_resampled(part, fine, unit) for part in region) for region in smooth)
+        coarse_ring = _resampled(ring, fine)
+        regions = tuple(tuple(_resampled(part, fine) for part in region) for region in smooth)
         if _is_sound(coarse_ring, regions):
             break
         fine /= 4
@@ -88,8 +156,9 @@ def build_outline(
     pieces = _pieces(coarse_ring, regions)
     if inspected:
         faults += thicknesses(regions, coarse_ring, rules, 2 * fine + SLACK)
-    faults += topology(pieces, regions)
-    return Outline(pieces, _chambers(regions), worst_first(faults), moments)
+    faults += topology(pieces, regions) + notices
+    chambers = _chambers(regions)
+    return Outline(pieces, chambers, worst_first(faults), moments, grid.outer_radius)
 
 
 def _smooth(
@@ -102,7 +171,8 @@ def _smooth(
     else:
         claimed = drawn_regions(source, fine_sagitta(grid))
     if not rules.sealed:
-        return tuple(parts_of(claim.intersection(ring)) for claim in claimed)
+        fine = fine_sagitta(grid)
+        return tuple(parts_of(solid(claim.intersection(ring), fine)) for claim in claimed)
     territory = territories(source, extent) if isinstance(source, FeaturePoints) else None
     return sealed_chambers(grid, claimed, territory, rules)
 
@@ -117,12 +187,12 @@ def _smooth_moments(grid: PolarGrid, smooth: Sequence[Region]) -> Moments:
     return Moments(raw)
 
 
-def _resampled(polygon: Polygon, sagitta: float, unit: float) -> Polygon:
+def _resampled(polygon: Polygon, sagitta: float) -> Polygon:
     import shapely
 
     # every loop the same way round, so that equal loops get equal vertices
     loops = [loop[::-1] for loop in loops_of(polygon)]
-    exterior, *holes = (resample(loop, sagitta, unit) for loop in loops)
+    exterior, *holes = (resample(loop, sagitta) for loop in loops)
     return shapely.Polygon(exterior, holes)
 
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
@@ -16,9 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["regions", "territories"]
 
-SAME_PLACE = 1e-6  # mm; a point this near to an earlier one has no cell
 LATTICE = 1e-6  # mm; vertices that neighbouring cells share are the same after rounding to this
-FARTHEST = 1e6  # mm; beyond that a bisector's place is lost to rounding
+FARTHEST = 1e8  # mm; beyond that a bisector's place is lost to rounding
 
 
 def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
@@ -26,9 +24,9 @@ def regions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
-    return _unions(points, np.ones(len(points), dtype=np.bool_), extent)
+    return _unions(_in_order(points), extent)
 
 
 def territories(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
@@ -39,17 +37,26 @@ def territories(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis.
+    ValueError : a feature point farther than 10⁸ mm from the axis.
     """
-    return _unions(points, points.type != MATERIAL, extent)
+    points = _in_order(points)
+    own = points.type != MATERIAL
+    return _unions(FeaturePoints(points.x[own], points.y[own], points.type[own]), extent)
 
 
-def _unions(
-    points: FeaturePoints, chosen: NDArray[np.bool_], extent: float
-) -> tuple[Geometry, ...]:
+def _in_order(points: FeaturePoints) -> FeaturePoints:
+    """Sorted by place, so that polygons are the same in any order; of equal places the earliest."""
+    order = np.lexsort((points.y, points.x))
+    x, y, kinds = points.x[order], points.y[order], points.type[order]
+    new = np.ones(len(points), dtype=np.bool_)
+    new[1:] = (np.diff(x) != 0) | (np.diff(y) != 0)
+    return FeaturePoints(x[new], y[new], kinds[new])
+
+
+def _unions(points: FeaturePoints, extent: float) -> tuple[Geometry, ...]:
     import shapely
 
-    x, y, kinds = points.x[chosen], points.y[chosen], points.type[chosen]
+    x, y, kinds = points.x, points.y, points.type
     if x.size and max(np.abs(x).max(), np.abs(y).max()) > FARTHEST:
         raise ValueError(f"feature points: at most {FARTHEST:g} mm from the axis")
     cells = _cells(x, y, extent)
@@ -71,27 +78,23 @@ def _unions(
 def _cells(x: FloatArray, y: FloatArray, extent: float) -> list[list[tuple[float, float]]]:
     """Every point's cell: a square, cut by the bisectors to the others, the nearest first.
 
-    Points that lie farther than twice the cell's farthest corner can not cut it any more.
+    No two points are in one place. Points that lie farther than twice the cell's farthest corner
+    can not cut it any more.
     """
     e = float(extent)
     square = [(-e, -e), (e, -e), (e, e), (-e, e)]
     cells: list[list[tuple[float, float]]] = []
-    gone = np.zeros(x.size, dtype=np.bool_)
     for k in range(x.size):
         a, b = float(x[k]), float(y[k])
         squared = (x - a) ** 2 + (y - b) ** 2
-        if (squared[:k][~gone[:k]] < SAME_PLACE**2).any():
-            gone[k] = True
-            cells.append([])
-            continue
         cell = square
         reach = _reach(cell, a, b)
         nearest = np.argsort(squared, kind="stable")
         for u, v, far in zip(*(a[nearest].tolist() for a in (x, y, squared)), strict=True):
             if far > 4 * reach:
                 break
-            if far < SAME_PLACE**2:
-                continue
+            if far == 0:
+                continue  # the point itself
             # (u − a) X + (v − b) Y ≤ c on this side of the bisector
             c = ((u - a) * (u + a) + (v - b) * (v + b)) / 2
             clipped = _clip(cell, u - a, v - b, c)

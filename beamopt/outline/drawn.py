@@ -8,34 +8,134 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.outline.ring import arc, circle
+from beamopt.outline.faults import Fault, FaultKind
+from beamopt.outline.ring import arc, circle, fine_sagitta, ring_polygon
+from beamopt.outline.smoothing import parts_of
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import SUPPLIES
-from beamopt.section.grid import angle_between
+from beamopt.section.grid import PolarGrid, angle_between
 
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["drawn_regions"]
+__all__ = ["drawing_faults", "drawn_regions", "outside", "solid"]
 
 
 NOTHING = 1e-6  # mm; radii below it have no arc
 
 
 def drawn_regions(shapes: Sequence[Shape], sagitta: float) -> tuple[Geometry, ...]:
-    """For supplies 1, 2, 3 what is drawn of them; a later shape covers an earlier one."""
+    """For supplies 1, 2, 3 what is drawn of them; a later shape covers an earlier one.
+
+    Two polygons of one arc differ by up to a sagitta: what is narrower than two of them is none.
+    """
     import shapely
 
+    polygons = _drawn_polygons(shapes, sagitta)
     drawn = {supply: shapely.Polygon() for supply in SUPPLIES}
-    for shape in shapes:
-        polygon = _circle(shape, sagitta) if isinstance(shape, Circle) else _piece(shape, sagitta)
+    for number in _visible(polygons, sagitta):
+        own, polygon = shapes[number].supply, polygons[number]
         for supply in SUPPLIES:
             drawn[supply] = (
                 drawn[supply].union(polygon)
-                if supply == shape.supply
-                else drawn[supply].difference(polygon)
+                if supply == own
+                else _without(drawn[supply], polygon, sagitta)
             )
     return tuple(drawn[supply] for supply in SUPPLIES)
+
+
+def _drawn_polygons(shapes: Sequence[Shape], sagitta: float) -> list[Geometry]:
+    """Each shape as a polygon of its area, whatever covers it."""
+    import shapely
+
+    polygons = [
+        _circle(shape, sagitta) if isinstance(shape, Circle) else _piece(shape, sagitta)
+        for shape in shapes
+    ]
+    # the arcs of corners that only just fit may cross by a rounding
+    return [
+        polygon if polygon.is_valid else shapely.MultiPolygon(parts_of(shapely.make_valid(polygon)))
+        for polygon in polygons
+    ]
+
+
+def _hidden(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
+    """Numbers of the polygons of which later ones leave nothing, ascending."""
+    visible = set(_visible(polygons, sagitta))
+    return [number for number in range(len(polygons)) if number not in visible]
+
+
+def outside(shapes: Sequence[Shape], grid: PolarGrid) -> list[int]:
+    """Numbers of the shapes that have no area within the ring or sector, ascending."""
+    sagitta = fine_sagitta(grid)
+    ring = ring_polygon(grid)
+    return [
+        number
+        for number, polygon in enumerate(_drawn_polygons(shapes, sagitta))
+        if solid(polygon.intersection(ring), sagitta).is_empty
+    ]
+
+
+def drawing_faults(
+    shapes: Sequence[Shape], ring: Polygon, sagitta: float, chambers: Sequence[Sequence[Polygon]]
+) -> list[Fault]:
+    """Drawn chambers that a surface cuts, that later ones hide, and that came to nothing.
+
+    chambers : what there is of supplies 1, 2, 3 in the section.
+    """
+    import shapely
+
+    polygons = _drawn_polygons(shapes, sagitta)
+    covered, faults = set(_hidden(polygons, sagitta)), []
+    for number, (shape, polygon) in enumerate(zip(shapes, polygons, strict=True)):
+        supplies, middle = (shape.supply,), _xy(polygon.point_on_surface())
+        if number in covered:
+            faults.append(Fault(FaultKind.HIDDEN, polygon.area, middle, supplies, drawn=number))
+            continue
+        beyond = _without(polygon, ring, sagitta)
+        if not beyond.is_empty:
+            cuts = shapely.get_parts(shapely.line_merge(ring.boundary.intersection(polygon)))
+            cut = max(cuts, key=shapely.length, default=polygon.boundary)
+            place = _xy(cut.interpolate(0.5, normalized=True))
+            faults.append(Fault(FaultKind.CUT, beyond.area, place, supplies, drawn=number))
+        own = shapely.MultiPolygon(list(chambers[shape.supply - 1]))
+        if solid(polygon.intersection(own), sagitta).is_empty:
+            faults.append(Fault(FaultKind.LOST, polygon.area, middle, supplies, drawn=number))
+    return faults
+
+
+def _xy(point: Geometry) -> tuple[float, float]:
+    return float(point.x), float(point.y)
+
+
+def _visible(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
+    import shapely
+
+    cover, found = shapely.Polygon(), []
+    for number in reversed(range(len(polygons))):
+        if not _without(polygons[number], cover, sagitta).is_empty:
+            found.append(number)
+            cover = cover.union(polygons[number])
+    return found[::-1]
+
+
+def _without(geometry: Geometry, polygon: Geometry, sagitta: float) -> Geometry:
+    """What a polygon leaves of a geometry; no slivers and spikes narrower than two sagittas."""
+    if not geometry.intersects(polygon):
+        return geometry
+    return solid(geometry.difference(polygon), sagitta)
+
+
+def solid(geometry: Geometry, sagitta: float) -> Geometry:
+    """A geometry's polygons without slivers and spikes narrower than two sagittas [mm]."""
+    import shapely
+
+    geometry = shapely.MultiPolygon(parts_of(geometry))  # not the lines where polygons touch
+    with np.errstate(invalid="ignore"):  # mitres of straight corners divide 0 by 0 in GEOS
+        thick = geometry.buffer(-sagitta, join_style="mitre").buffer(
+            2 * sagitta, join_style="mitre"
+        )
+    return geometry.intersection(thick)
 
 
 def _circle(shape: Circle, sagitta: float) -> Polygon:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import Enum
 
-__all__ = ["Fault", "FaultKind", "Severity"]
+__all__ = ["Fault", "FaultKind", "Severity", "summaries", "worst_first"]
 
 
 class Severity(Enum):
@@ -28,29 +30,45 @@ class FaultKind(Enum):
     NO_MATERIAL = "no material"
     UNSEALED = "a chamber is open"
     INVALID = "a polygon touches itself or another one"
+    CUT = "a drawn chamber is cut by a surface"
+    HIDDEN = "a drawn chamber is hidden under later ones"
+    LOST = "a drawn chamber is no part of the section"
+    WALL_ELEMENTS = "walls of elements have no effect"
 
     @property
     def severity(self) -> Severity:
         """Notice, violation or fatal."""
-        if self in (FaultKind.ISLAND, FaultKind.NO_CHAMBER):
+        if self in NOTICES:
             return Severity.NOTICE
         if self in (FaultKind.SKIN, FaultKind.WALL, FaultKind.NECK):
             return Severity.VIOLATION
         return Severity.FATAL
 
 
+NOTICES = {
+    FaultKind.ISLAND,
+    FaultKind.NO_CHAMBER,
+    FaultKind.CUT,
+    FaultKind.HIDDEN,
+    FaultKind.LOST,
+    FaultKind.WALL_ELEMENTS,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that is wrong with an outline; `str` of it is one sentence.
+    """One thing that is wrong with a section; `str` of it is one sentence.
 
     Parameters
     ----------
     status : what is wrong.
     value : thickness [mm] of a skin, wall or neck and of what is unsealed or invalid; area [mm²]
-        of an island; pieces of material; 0 for what is missing.
+        of an island, of a drawn chamber, or of what of it lies outside; pieces of material;
+        elements of a wall; 0 for what is missing.
     place : where [mm], or None for the section as a whole.
     supplies : the supplies that it concerns, ascending.
     asked : the thickness that the rules ask for [mm], or None.
+    drawn : number of the drawn chamber in the design's `drawing`, or None.
     """
 
     status: FaultKind
@@ -58,24 +76,40 @@ class Fault:
     place: tuple[float, float] | None = None
     supplies: tuple[int, ...] = ()
     asked: float | None = None
+    drawn: int | None = None
 
     @property
     def severity(self) -> Severity:
         """Notice, violation or fatal."""
         return self.status.severity
 
+    def scaled(self, by: float) -> Fault:
+        """The same in a section that is `by` times as large."""
+        areas = (FaultKind.ISLAND, FaultKind.CUT, FaultKind.HIDDEN, FaultKind.LOST)
+        counts = (FaultKind.PIECES, FaultKind.WALL_ELEMENTS)
+        power = 2 if self.status in areas else 0 if self.status in counts else 1
+        return replace(
+            self,
+            value=by**power * self.value,
+            place=self.place and (by * self.place[0], by * self.place[1]),
+            asked=None if self.asked is None else by * self.asked,
+        )
+
     def __str__(self) -> str:
         where = ""
         if self.place:
-            x, y = (round(value, 1) + 0.0 for value in self.place)  # no "−0.0"
-            where = f" at ({x:.1f}, {y:.1f}) mm"
+            far = max(map(abs, self.place))
+            digits = max(1, 1 - math.floor(math.log10(far))) if far > 0 else 1
+            x, y = (round(value, digits) + 0.0 for value in self.place)  # no "−0.0"
+            where = f" at ({x:.{digits}f}, {y:.{digits}f}) mm"
         asked = f", asked {self.asked:g}" if self.asked is not None else ""
         return f"{self._subject()}{where.replace('-', '−')}{asked}"
 
     def _subject(self) -> str:
         numbers = " and ".join(str(supply) for supply in self.supplies)
         many = "supplies" if len(self.supplies) > 1 else "supply"
-        thickness = f"{self.value:.3f} mm"
+        thickness = _millimetres(self.value)
+        drawn = "a drawn chamber" if self.drawn is None else f"drawing[{self.drawn}]"
         match self.status:
             case FaultKind.SKIN:
                 return f"skin over {many} {numbers} is {thickness}"
@@ -97,3 +131,36 @@ class Fault:
                 return f"a chamber of {many} {numbers} opens to a surface"
             case FaultKind.INVALID:
                 return f"polygons of {many} {numbers} touch" if numbers else "polygons touch"
+            case FaultKind.CUT:
+                outside = f"{self.value:.3g} mm² of it lie outside, cut"
+                return f"{drawn} ({many} {numbers}) is cut by a surface: {outside}"
+            case FaultKind.HIDDEN:
+                return f"{drawn} ({many} {numbers}) is hidden under later chambers"
+            case FaultKind.LOST:
+                return f"{drawn} ({many} {numbers}) is no part of the section"
+            case FaultKind.WALL_ELEMENTS:
+                said = "has no effect: a sealed section has its walls in mm (seal.wall)"
+                return f"wall_elements = {self.value:.0f} {said}"
+
+
+def _millimetres(length: float) -> str:
+    return f"{length:.3f} mm" if length >= 0.01 else f"{length:.3g} mm"
+
+
+def worst_first(faults: Iterable[Fault]) -> tuple[Fault, ...]:
+    """Fatal ones, then violations, then notices; otherwise as found."""
+    rank = {severity: k for k, severity in enumerate(reversed(Severity))}
+    return tuple(sorted(faults, key=lambda fault: rank[fault.severity]))
+
+
+def summaries(faults: Iterable[Fault]) -> tuple[str, ...]:
+    """One line for each drawn chamber; of other kinds the only fault, or the first and how many."""
+    kinds: dict[tuple[FaultKind, int | None], list[Fault]] = {}
+    for fault in faults:
+        kinds.setdefault((fault.status, fault.drawn), []).append(fault)
+    return tuple(
+        f"{kind.value} ({len(found)} places, first: {found[0]})"
+        if len(found) > 1
+        else str(found[0])
+        for (kind, _), found in kinds.items()
+    )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.outline.faults import Fault, FaultKind, Severity
+from beamopt.outline.faults import Fault, FaultKind
 from beamopt.outline.outline import Piece
 from beamopt.outline.rays import thin_places
 from beamopt.outline.smoothing import Region, loops_of
@@ -17,19 +18,14 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["TOUCH", "contacts", "nearest", "thicknesses", "topology", "worst_first"]
+__all__ = ["TOUCH", "contacts", "nearest", "pinches", "thicknesses", "topology"]
 
 TOUCH = 0.01
 """mm; what is nearer is not separated by a wall."""
 
+PINCH = 0.05  # mm; drawn shapes that touch overlap by their polygons in less than twice this
 SPACING = 0.1  # mm between rays
 FACING = 0.7  # cosine: walls that close in on each other by more than 45° are a corner's two sides
-
-
-def worst_first(faults: Sequence[Fault]) -> tuple[Fault, ...]:
-    """Fatal ones, then violations, then notices; otherwise as found."""
-    rank = {severity: k for k, severity in enumerate(reversed(Severity))}
-    return tuple(sorted(faults, key=lambda fault: rank[fault.severity]))
 
 
 def contacts(regions: Sequence[Region], ring: Polygon) -> list[Fault]:
@@ -40,6 +36,22 @@ def contacts(regions: Sequence[Region], ring: Polygon) -> list[Fault]:
     for supplies, distance, place in _between(regions, TOUCH):
         kind = FaultKind.UNSEALED if len(supplies) > 1 else FaultKind.INVALID
         faults.append(Fault(kind, distance, place, supplies))
+    return faults
+
+
+def pinches(regions: Sequence[Region]) -> list[Fault]:
+    """Drawn shapes of one supply that touch: two lobes with no more than a point between them."""
+    import shapely
+
+    faults = []
+    for supply, region in zip(SUPPLIES, regions, strict=True):
+        for part in region:
+            lobes = shapely.get_parts(part.buffer(-PINCH, quad_segs=1))
+            for one, other in combinations(lobes, 2):
+                line = shapely.shortest_line(one, other)
+                if line.length < 4 * PINCH:
+                    place = _xy(line.interpolate(0.5, normalized=True))
+                    faults.append(Fault(FaultKind.INVALID, 0.0, place, (supply,)))
     return faults
 
 

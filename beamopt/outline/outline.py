@@ -32,6 +32,10 @@ class Loop:
     def __post_init__(self) -> None:
         self.points.setflags(write=False)
 
+    def scaled(self, by: float) -> Loop:
+        """The same line, `by` times as large."""
+        return Loop(by * self.points, self.supply)
+
 
 @dataclass(frozen=True, eq=False)
 class Piece:
@@ -55,6 +59,10 @@ class Piece:
         """Whether it touches no surface: it hangs in a chamber."""
         return all(loop.supply != MATERIAL for loop in self.loops)
 
+    def scaled(self, by: float) -> Piece:
+        """The same piece, `by` times as large."""
+        return Piece(self.exterior.scaled(by), tuple(hole.scaled(by) for hole in self.holes))
+
 
 @dataclass(frozen=True, eq=False)
 class Chamber:
@@ -69,6 +77,10 @@ class Chamber:
     exterior: FloatArray
     holes: tuple[FloatArray, ...]
 
+    def __post_init__(self) -> None:
+        for loop in (self.exterior, *self.holes):
+            loop.setflags(write=False)
+
     @cached_property
     def integrals(self) -> FloatArray:
         """(6,) of {1, x, y, x², y², xy} over the chamber, about the axis [mm², mm³, mm⁴]."""
@@ -79,6 +91,10 @@ class Chamber:
     def area(self) -> float:
         """Area [mm²]."""
         return float(self.integrals[0])
+
+    def scaled(self, by: float) -> Chamber:
+        """The same chamber, `by` times as large."""
+        return Chamber(self.supply, by * self.exterior, tuple(by * hole for hole in self.holes))
 
 
 class Views(NamedTuple):
@@ -99,12 +115,14 @@ class Outline:
         (`FaultKind.UNSEALED`) the polygons are the fine ones, not resampled, and a loop may run
         along a surface and a chamber; it then counts as a surface.
     smooth_moments : of the smooth section before it was resampled.
+    outer_radius : of the ring, disc or sector that the section is cut from [mm].
     """
 
     pieces: tuple[Piece, ...]
     chambers: tuple[Chamber, ...]
     faults: tuple[Fault, ...]
     smooth_moments: Moments
+    outer_radius: float
 
     @property
     def buildable(self) -> bool:
@@ -146,6 +164,18 @@ class Outline:
         for chamber in self.chambers:
             raw[chamber.supply] += chamber.integrals
         return Moments(raw)
+
+    def scaled(self, by: float) -> Outline:
+        """The outline of a section that is `by` times as large."""
+        if by == 1:
+            return self
+        return Outline(
+            tuple(piece.scaled(by) for piece in self.pieces),
+            tuple(chamber.scaled(by) for chamber in self.chambers),
+            tuple(fault.scaled(by) for fault in self.faults),
+            Moments(self.smooth_moments.raw * by ** np.array([2, 3, 3, 4, 4, 4])),
+            by * self.outer_radius,
+        )
 
     def views(self, raster: Moments) -> Views:
         """The section's moments in the search's raster, smooth, and as these polygons."""

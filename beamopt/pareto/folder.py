@@ -6,7 +6,7 @@ from pathlib import Path
 
 from beamopt.bound_folder import bound_summary
 from beamopt.design import Design
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.files import csv_text, json_text, write_atomic, write_changed
 from beamopt.folder import clear_leftovers
 from beamopt.judge import Judge, Status
 from beamopt.kept_scene import scene_to_keep
@@ -15,42 +15,45 @@ from beamopt.pareto.scores import BEST, OBJECTIVES
 from beamopt.provenance import provenance
 from beamopt.scene import Scene
 from beamopt.scene_text import scene_text
+from beamopt.timing import write_times
 
 __all__ = ["JOURNAL", "begin_folder", "front_csv", "write_front"]
 
 JOURNAL = "journal.jsonl"
+FIGURES = ("pareto.svg", "pareto.png")
 
 
 def begin_folder(folder: Path, scene: Scene) -> None:
     """Keep the question beside the journal: the scene, and copies of its target's files."""
     kept, sources = scene_to_keep(scene)
     for name, content in sources.items():
-        write_atomic(folder / name, content)
-    write_atomic(folder / "scene.toml", scene_text(kept))
+        write_changed(folder / name, content)
+    write_changed(folder / "scene.toml", scene_text(kept))
 
 
 def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = True) -> None:
-    """Write table, designs and figure to a folder with its question; each whole or not at all."""
+    """Write table, designs and figure to a folder with its question; each whole or not at all.
+
+    What is there already stays as it is, the times too where nothing else changes.
+    """
     clear_leftovers(folder, None)
     designs = {k: _design(front, k) for k in front.worth_keeping()}
     names = {k: f"front-{k:03d}.json" for k in designs}
     for old in folder.glob("front-*.json"):
         if old.name not in names.values():
             old.unlink()
-    for k, design in designs.items():
-        design.save(folder / names[k])
-    write_atomic(folder / "front.csv", front_csv(front, judge, designs, names))
-    write_atomic(folder / "history.csv", _history_csv(front))
-    write_atomic(folder / "summary.json", json_text(_summary(front)))
-    if figures and front.designs:
+    texts = {names[k]: design.json() for k, design in designs.items()}
+    texts["front.csv"] = front_csv(front, judge, designs, names)
+    texts["history.csv"] = _history_csv(front)
+    texts["summary.json"] = json_text(_summary(front))
+    new = [name for name, text in texts.items() if write_changed(folder / name, text)]
+    drawn = all((folder / name).exists() for name in FIGURES)
+    if figures and front.designs and (new or not drawn):
         _draw(folder, front, designs)
-    timing = [
-        ("search", front.seconds, "s"),
-        ("evaluation", front.seconds / front.evaluations, "s"),
-    ]
-    write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
-    made = {"seed": front.scene.search.seed, **provenance(["pymoo", "moocore"])}
-    write_atomic(folder / "provenance.json", json_text(made))
+    if new or not (folder / "provenance.json").exists():
+        write_times(folder / "timing.csv", front.timing, {})
+        made = {"seed": front.scene.search.seed, **provenance(["pymoo", "moocore"])}
+        write_atomic(folder / "provenance.json", json_text(made))
 
 
 def front_csv(front: Front, judge: Judge, designs: dict[int, Design], names: dict[int, str]) -> str:
@@ -95,6 +98,7 @@ def _summary(front: Front) -> dict[str, object]:
     rejected = {one.name: front.rejected[one] for one in Status if one in front.rejected}
     return {
         "status": front.status.value,
+        "ended": front.status.name,
         "scene": front.scene.name,
         "seed": front.scene.search.seed,
         "objectives": list(front.objectives),
@@ -127,4 +131,4 @@ def _draw(folder: Path, front: Front, designs: dict[int, Design]) -> None:
         [(k, titles[k], designs[k]) for k in kept],
         f"{front.scene.name}: {len(front.designs)} designs of {front.evaluations} judged",
     )
-    save_figure(figure, folder / "pareto.svg", folder / "pareto.png")
+    save_figure(figure, *(folder / name for name in FIGURES))

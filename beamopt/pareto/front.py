@@ -15,6 +15,7 @@ from beamopt.judge import Status
 from beamopt.pareto.search import Candidate, FrontRecord, front_values
 from beamopt.plot.pareto import spans_decades
 from beamopt.scene import Scene
+from beamopt.timing import Timing
 
 __all__ = ["Front"]
 
@@ -31,7 +32,7 @@ class Front:
     history : one record a generation, the initial population first.
     seen : (n, objectives) values of all that were judged.
     rejected : how many could not be judged or may not be made, by reason.
-    seconds : time that the search took.
+    timing : of the sections that were judged now.
     bound : how low L can be, whatever the section, or why that is not known.
     """
 
@@ -42,8 +43,13 @@ class Front:
     history: tuple[FrontRecord, ...]
     seen: FloatArray
     rejected: Mapping[Status, int]
-    seconds: float
+    timing: Timing
     bound: Certificate
+
+    @property
+    def seconds(self) -> float:
+        """Time that the search took, without compiling [s]."""
+        return self.timing.seconds
 
     @property
     def designs(self) -> tuple[Candidate, ...]:

@@ -42,6 +42,7 @@ class FrontJournal:
             "scene": kept,
             "target": _digest(scene),
         }
+        self.path = path
         self._lines = LineJournal(path, asked, "search for a front")
 
     def replay(self, search: FrontSearch) -> Iterator[list[Score]]:
@@ -58,6 +59,11 @@ class FrontJournal:
             if len(known) < len(scores):
                 raise self._other(number)
             yield known
+
+    @property
+    def last_generation(self) -> int:
+        """The generation that the last line on record is of; -1 without any."""
+        return len(self._lines.entries) - 1
 
     def write(self, search: FrontSearch, scores: Sequence[Score]) -> None:
         """Append the scores of what `search` asks for; call it before telling them."""

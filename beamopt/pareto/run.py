@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.bound.certificate import quick_certificate
+from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
+from beamopt.evolve.variation import Variation
 from beamopt.file_lock import locked
 from beamopt.folder import claim_folder
 from beamopt.judge import in_parts
@@ -24,10 +26,13 @@ from beamopt.pareto.scores import Score, scored
 from beamopt.pareto.search import FrontRecord, FrontSearch
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.timing import Timing
 
 __all__ = ["POPULATION", "find_front"]
 
 POPULATION = 100
+
+Told = Callable[[FrontRecord], None]
 
 
 def find_front(
@@ -53,12 +58,13 @@ def find_front(
     resume : go on with the search in `out`; it may be given more generations.
     executor, workers : judge each generation in `workers` parts; the result depends on neither.
     callback : called after every generation. KeyboardInterrupt, raised there or by Ctrl-C, ends
-        the search with what it has, once it has a first population.
+        the search with what it has, once it has a first population; while the journal is read it
+        is raised again.
 
     Raises
     ------
-    InputError : the target, or the folder or journal to go on with, can not be used; or another
-        process is writing to it.
+    InputError : the target, or the folder or journal to go on with, can not be used; the search
+        there has more generations than are asked for; or another process is writing to it.
     ImportError : pymoo is not installed.
     """
     search = FrontSearch(scene, objectives, population)
@@ -72,21 +78,30 @@ def find_front(
             claim_folder(folder, JOURNAL, resume=resume)
             held.enter_context(locked(folder / JOURNAL))
             journal = FrontJournal(folder / JOURNAL, scene, objectives, population)
-            begin_folder(folder, scene)
-        started = time.perf_counter()
+            _check_length(journal, scene)
         history: list[FrontRecord] = []
         judged = partial(scored, judge)
         evaluate = partial(in_parts, judged, executor=executor, workers=workers)
-        status = _run(search, scene.search.generations, evaluate, journal, history, callback)
+
+        def told(record: FrontRecord) -> None:
+            history.append(record)
+            if callback is not None:
+                callback(record)
+
+        _replay(search, journal, told)
+        if folder is not None:
+            begin_folder(folder, scene)
+        done, timing = _run(search, scene, evaluate, journal, told)
+        ended = StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
         front = Front(
-            status=status,
+            status=ended if done else StopReason.INTERRUPTED,
             scene=scene,
             objectives=tuple(objectives),
             population=population,
             history=tuple(history),
             seen=np.array(search.seen).reshape(-1, len(objectives)),
             rejected=dict(search.rejected),
-            seconds=time.perf_counter() - started,
+            timing=timing,
             bound=quick_certificate(scene, target),
         )
         if folder is not None:
@@ -94,33 +109,45 @@ def find_front(
     return front
 
 
+def _check_length(journal: FrontJournal, scene: Scene) -> None:
+    """Refuse to end a search earlier than it is."""
+    there, asked = journal.last_generation, scene.search.generations
+    if there > asked:
+        said = f"at least {there}, as the search there has; or name another folder"
+        raise InputError(journal.path, "search.generations", asked, said)
+
+
+def _replay(search: FrontSearch, journal: FrontJournal | None, told: Told) -> None:
+    """Tell the search what is on record."""
+    for scores in journal.replay(search) if journal is not None else ():
+        told(search.tell(scores))
+
+
 def _run(
     search: FrontSearch,
-    generations: int,
+    scene: Scene,
     evaluate: Callable[[Sequence[FeaturePoints]], list[Score]],
     journal: FrontJournal | None,
-    history: list[FrontRecord],
-    callback: Callable[[FrontRecord], None] | None,
-) -> StopReason:
-    """Ask, judge and tell until all generations are done; records go to `history`."""
-
-    def told(scores: list[Score]) -> None:
-        history.append(search.tell(scores))
-        if callback is not None:
-            callback(history[-1])
-
+    told: Told,
+) -> tuple[bool, Timing]:
+    """Ask, judge and tell until all generations are done; says whether they are."""
+    before, compiling, generations = search.evaluations, 0.0, scene.search.generations
+    started = time.perf_counter()
+    if search.generation <= generations and search.ask():
+        Variation(scene).warm_up()
+        evaluate(search.ask()[:1])  # every kernel once, so that none is compiled while it counts
+        compiling = time.perf_counter() - started
+    started, done = time.perf_counter(), False
     try:
-        for scores in journal.replay(search) if journal is not None else ():
-            if search.generation > generations:
-                break
-            told(scores)
         while search.generation <= generations and search.ask():
             scores = evaluate(search.ask())
             if journal is not None:
                 journal.write(search, scores)
-            told(scores)
+            told(search.tell(scores))
+        done = True
     except KeyboardInterrupt:
-        if not history:
+        if search.generation == 0:
             raise
-        return StopReason.INTERRUPTED
-    return StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
+    judged = search.evaluations - before
+    seconds = time.perf_counter() - started if judged else 0.0
+    return done, Timing(seconds, judged, compiling)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,26 +18,29 @@ if TYPE_CHECKING:
 __all__ = ["LOOKS", "Cell", "Panel", "map_figure"]
 
 LOOKS: dict[str, tuple[str, str, str]] = {
-    "right": ("R", "#d6e8f5", "#202020"),
-    "refused rightly": ("r", "#a8c4d8", "#202020"),
-    "inaccurate": ("i", "#f0e442", "#202020"),
-    "refused wrongly": ("x", "#d55e00", "#ffffff"),
-    "too slow": ("s", "#e69f00", "#202020"),
-    "wrong branch": ("W", "#7a1f5c", "#ffffff"),
-    "tip without equilibrium": ("N", "#101010", "#ffffff"),
-    "undecided": ("?", "#ffffff", "#808080"),
+    "RIGHT": ("R", "#d6e8f5", "#202020"),
+    "REFUSED_RIGHTLY": ("r", "#a8c4d8", "#202020"),
+    "INACCURATE": ("i", "#f0e442", "#202020"),
+    "REFUSED_WRONGLY": ("x", "#d55e00", "#ffffff"),
+    "TOO_SLOW": ("s", "#e69f00", "#202020"),
+    "WRONG_BRANCH": ("W", "#7a1f5c", "#ffffff"),
+    "NO_SUCH_TIP": ("N", "#101010", "#ffffff"),
+    "UNDECIDED": ("?", "#ffffff", "#808080"),
 }
-"""Letter, colour, colour of the letter (after Okabe and Ito): the worse, the darker in print."""
+"""Letter, colour, colour of the letter (after Okabe and Ito), by the name of a verdict.
 
+The worse, the darker in print.
+"""
 
-CORNER = LOOKS["wrong branch"][1]
+NO_TEXTS: Mapping[str, str] = {}
+CORNER = LOOKS["WRONG_BRANCH"][1]
 
 
 @dataclass(frozen=True)
 class Cell:
     """Several cases of one method.
 
-    verdict : the commonest, a key of `LOOKS`. seconds : their median time.
+    verdict : name of the commonest, a key of `LOOKS`. seconds : their median time.
     flagged : whether some of them got a wrong tip all the same, which is marked with a corner.
     success : share of them that are told as they are, where that is to be written.
     """
@@ -59,8 +62,16 @@ class Panel:
 
 
 @styled
-def map_figure(panels: Sequence[Panel], title: str = "", across: int = 2) -> Figure:
-    """Panels in rows of `across`; the legend in the place of one, or below."""
+def map_figure(
+    panels: Sequence[Panel],
+    title: str = "",
+    across: int = 2,
+    texts: Mapping[str, str] = NO_TEXTS,
+) -> Figure:
+    """Panels in rows of `across`; the legend in the place of one, or below.
+
+    texts : of verdicts in the legend, by name; the name where there is none.
+    """
     down = -(-len(panels) // across)
     room = down * across > len(panels)
     below = 0.0 if room else 1.15
@@ -73,18 +84,20 @@ def map_figure(panels: Sequence[Panel], title: str = "", across: int = 2) -> Fig
     for axes in grid[len(panels) :]:
         axes.set_axis_off()
     if room:
-        grid[-1].legend(handles=_legend(), loc="center", ncols=1, fontsize=11, labelspacing=0.9)
+        grid[-1].legend(
+            handles=_legend(texts), loc="center", ncols=1, fontsize=11, labelspacing=0.9
+        )
     else:
-        figure.legend(handles=_legend(), loc="lower center", ncols=2)
+        figure.legend(handles=_legend(texts), loc="lower center", ncols=2)
     figure.suptitle(title)
     return figure
 
 
-def _legend() -> list[Patch]:
+def _legend(texts: Mapping[str, str]) -> list[Patch]:
     from matplotlib.patches import Patch
 
     patches = [
-        Patch(facecolor=colour, edgecolor="#808080", label=f"{letter}  {name}")
+        Patch(facecolor=colour, edgecolor="#808080", label=f"{letter}  {texts.get(name, name)}")
         for name, (letter, colour, _) in LOOKS.items()
     ]
     return [*patches, Patch(facecolor=CORNER, label="corner: some of the tips are wrong")]

@@ -23,8 +23,7 @@ from beamopt.refine.fragments import Fragments, fragments_of, kinds_of, moments_
 from beamopt.refine.orbits import Orbits
 from beamopt.refine.truth import Judged, Truth
 from beamopt.rod.response import linear_response
-from beamopt.section.delaunay import delaunay_edges
-from beamopt.section.neighbours import neighbours_of
+from beamopt.section.neighbours import cell_neighbours, neighbours_of
 
 __all__ = ["Schedule", "anneal"]
 
@@ -68,7 +67,7 @@ def anneal(
     """
     grid, points = judge.grid, start.points
     fragments = fragments_of(grid, points, judge.wall_elements, judge.rules)
-    edges = delaunay_edges(points.x, points.y)
+    edges = cell_neighbours(points.x, points.y, grid.domain)
     around = neighbours_of(edges, len(points))
     flips = Flips(fragments, edges, *around, orbits, judge.neighbour_weight)
     here, best, judged = start, None, 0

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled
-from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import PolarGrid
-from beamopt.section.neighbours import neighbours_of
+from beamopt.section.grid import Domain, PolarGrid
+from beamopt.section.neighbours import cell_neighbours, neighbours_of
 
 __all__ = ["moment_slopes"]
 
 GAUSS = 0.5 / np.sqrt(3.0)  # two points are exact for the cubics that are integrated
-
-
-class Domain(NamedTuple):
-    """Where cells may be chambers: a ring, or a sector of it [mm, rad]."""
-
-    inner: float
-    outer: float
-    start: float
-    span: float
 
 
 def moment_slopes(grid: PolarGrid, points: FeaturePoints, skin: float = 0.0) -> FloatArray:
@@ -37,14 +25,10 @@ def moment_slopes(grid: PolarGrid, points: FeaturePoints, skin: float = 0.0) -> 
     skin : what is nearer to the ring's surfaces [mm] is material whatever happens.
     """
     slopes = np.zeros((len(points), 2, 4, 6))
-    hole = grid.inner_radius > 0
-    domain = Domain(
-        grid.inner_radius + skin if hole else 0.0,
-        grid.outer_radius - skin,
-        float(np.radians(grid.start)),
-        float(np.radians(grid.span)),
-    )
-    edges = delaunay_edges(points.x, points.y)
+    ring = grid.domain
+    inner = ring.inner + skin if ring.inner > 0 else 0.0
+    domain = ring._replace(inner=inner, outer=ring.outer - skin)
+    edges = cell_neighbours(points.x, points.y, ring)
     begin, neighbours = neighbours_of(edges, len(points))
     _add_slopes(points.x, points.y, points.type, edges, begin, neighbours, domain, slopes)
     return slopes

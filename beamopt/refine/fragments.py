@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled, inlined
-from beamopt.section.delaunay import delaunay_edges
+from beamopt.section.cell_owners import cell_owners
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import sum_moments
-from beamopt.section.neighbours import neighbours_of
+from beamopt.section.neighbours import cell_neighbours, neighbours_of
 from beamopt.section.raster import nearest_types, tiling
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.section.walls import wall_steps
@@ -55,11 +55,12 @@ def fragments_of(
     closed gaps, rounded corners and filled chambers are left out.
     """
     cells = np.zeros(grid.shape, dtype=np.int64)
-    nearest_types(points.x, points.y, np.arange(len(points)), tiling(grid), cells)
+    own = cell_owners(points.x, points.y, grid.domain)
+    nearest_types(points.x[own], points.y[own], own, tiling(grid), cells)
     if rules.sealed:
         near, width = _near_in_mm(grid, points, cells, rules.wall / 2)
     else:
-        near, width = _near_in_elements(grid, cells, wall_steps(wall_elements))
+        near, width = _near_in_elements(grid, cells, wall_steps(wall_elements, rules))
     keys = np.concatenate([cells[..., None], near[..., :width]], axis=-1).reshape(-1, width + 1)
     border = keys[:, 1] != FAR if width else np.zeros(len(keys), dtype=np.bool_)
     found, inverse = _unique_rows(keys[border])
@@ -98,7 +99,7 @@ def _near_in_mm(
     grid: PolarGrid, points: FeaturePoints, cells: IndexArray, distance: float
 ) -> tuple[IndexArray, int]:
     """For every element the neighbours whose cells' edges are within `distance` [mm]."""
-    edges = delaunay_edges(points.x, points.y)
+    edges = cell_neighbours(points.x, points.y, grid.domain)
     begin, neighbours = neighbours_of(edges, len(points))
     near = np.full((*grid.shape, MOST_NEAR), FAR)
     x, y = grid.centroids

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
-from beamopt.section.delaunay import delaunay_edges
+from beamopt.section.cell_owners import distinct, first_of_places
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
 
@@ -69,15 +69,19 @@ def orbits_of(count: int, symmetry: Symmetry | None) -> Orbits:
 
 
 def with_cells(points: FeaturePoints, symmetry: Symmetry | None) -> FeaturePoints:
-    """The points that have a cell: none that lies where an earlier one does.
+    """The points that are in no earlier one's place.
 
-    Recombination leaves such twins; they would appear from nowhere when points move.
+    Recombination leaves such twins; they would appear from nowhere when points move. Under a
+    symmetry a generator goes with its images.
     """
-    if symmetry is not None:
-        return symmetry.expanded(with_cells(symmetry.generators(points), None))
-    if len(points) < 2:
-        return points
-    keep = np.unique(delaunay_edges(points.x, points.y))
-    if not len(keep):  # all in one place
-        keep = np.zeros(1, dtype=np.int64)
-    return FeaturePoints(points.x[keep], points.y[keep], points.type[keep])
+    if symmetry is None:
+        return distinct(points)
+    generators = symmetry.generators(points)
+    whole = symmetry.expanded(generators)
+    members = orbits_of(len(whole), symmetry).members
+    order = members.reshape(-1)  # orbit by orbit, so that the same orbit has the place everywhere
+    own = first_of_places(whole.x[order], whole.y[order])
+    kept = np.isin(members[:, 0], order[own])
+    return symmetry.expanded(
+        FeaturePoints(generators.x[kept], generators.y[kept], generators.type[kept])
+    )

@@ -12,6 +12,7 @@ from beamopt.refine.gauss_newton import Limits, descend
 from beamopt.refine.orbits import orbits_of, with_cells
 from beamopt.refine.truth import Judged, Truth, View, judged_on
 from beamopt.search_settings import Refining
+from beamopt.section.cell_owners import distinct
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
 from beamopt.streams import Purpose, stream
@@ -27,7 +28,8 @@ class RefineStatus(Enum):
     """How a refinement ended; the value is the text shown to people."""
 
     REFINED = "refined"
-    UNCHANGED = "nothing better was found; the section is as it was"
+    UNCHANGED = "nothing better was found; the feature points are as they were"
+    SYMMETRISED = "nothing better was found than the section made symmetric"
     NOT_JUDGED = "the section to refine can not be judged"
 
 
@@ -60,7 +62,7 @@ class Refined:
 
     before, after : verdicts on what counts, the outline where it is sealed, else the raster; the
     loss L + R and K after it are never above those before, and so, where λ is not 0, neither is
-    the neighbour ratio.
+    the neighbour ratio. A section that is to be symmetric and is not is made so before `before`.
     ratio_before, ratio : neighbour ratios. flips : proposed to the model.
     """
 
@@ -102,12 +104,14 @@ def refine(
 
     Raises
     ------
-    ValueError : a feature point farther than 10⁶ mm from the axis, where sections are sealed.
+    ValueError : sections are sealed, and a feature point that has a cell is farther than 10⁶ mm
+        from the axis.
     """
     settings = settings or Refining()
     sealed = judge.rules.sealed
     counts = judged_on(judge, View.OUTLINE if sealed else View.RASTER)
-    before = counts(points if symmetry is None else with_cells(points, symmetry))
+    start = points if symmetry is None else with_cells(points, symmetry)
+    before = counts(start)
     if not before.found:
         nothing = (StageRecord(Stage.START, 0, 1, before.verdict),)
         unjudged = replace(before, points=points)
@@ -119,8 +123,21 @@ def refine(
         best = work.on_outline(best, counts, before)
     better = best.loss <= before.loss and best.verdict.K <= before.verdict.K
     better = better and (best.loss < before.loss or best.verdict.K < before.verdict.K)
-    status = RefineStatus.REFINED if better else RefineStatus.UNCHANGED
-    return _refined(status, before, best if better else before, tuple(work.stages), work.flips)
+    status = RefineStatus.REFINED
+    if not better:
+        same = symmetry is None or _are_one(start, points)
+        status = RefineStatus.UNCHANGED if same else RefineStatus.SYMMETRISED
+        best = replace(before, points=points) if same else before
+    return _refined(status, before, best, tuple(work.stages), work.flips)
+
+
+def _are_one(one: FeaturePoints, other: FeaturePoints) -> bool:
+    """Whether two sets make one section by the same points in the same places."""
+    first, second = (
+        sorted(zip(each.x.tolist(), each.y.tolist(), each.type.tolist(), strict=True))
+        for each in (distinct(one), distinct(other))
+    )
+    return first == second
 
 
 def _refined(
@@ -191,7 +208,7 @@ class _Work:
         )
         start = truth(with_cells(points, self.symmetry))
         self._told(Stage.START, 0, start, 1)
-        if not start.found:  # what its twins or the points on a mirror line were is missed
+        if not start.found:
             return start
         enough = settings.ratio_enough * start.verdict.K
         best, is_settled, settled_in, here = start, False, 0, start

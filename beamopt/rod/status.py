@@ -17,6 +17,22 @@ class RodStatus(Enum):
     UNRESOLVED = "the finest resolution does not resolve the shape"
     DIVERGED = "the iteration diverged"
     STEPS_TOO_SMALL = "the steps of the load became too small"
+    WORK_LIMIT = "work limit reached"
     TOO_SLOW = "took too long"
     SKIPPED = "not looked for, because another one failed"
     NOT_REPRESENTABLE = "the method can not represent this rod"
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether a clock ended it: tried again it may end otherwise."""
+        return self is RodStatus.TOO_SLOW
+
+    @property
+    def is_physical(self) -> bool:
+        """Whether the rod has no stable equilibrium; other endings say nothing of it."""
+        return self in (RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the rod ends there: no finer resolution and no more work changes it."""
+        return self.is_physical

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.arrays import LabelArray
+from beamopt.section.cell_owners import points_with_cells
 from beamopt.section.drawing import Shape, rasterise
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 from beamopt.section.grid import PolarGrid
@@ -53,9 +54,10 @@ class CrossSection:
         wall_elements: int = 4,
         rules: SealRules = UNSEALED,
     ) -> CrossSection:
-        """The Voronoi section of feature points, with walls between different supplies, sealed."""
+        """The Voronoi section of feature points, walled between supplies, or sealed."""
+        points = points_with_cells(grid, points)
         if rules != UNSEALED:
-            return cls(grid, seal_points(grid, points, wall_steps(wall_elements), rules))
+            return cls(grid, seal_points(grid, points, wall_steps(wall_elements, rules), rules))
         return cls(grid, _walled(grid, raster(grid, points), wall_elements))
 
     @classmethod
@@ -66,9 +68,9 @@ class CrossSection:
         wall_elements: int = 4,
         rules: SealRules = UNSEALED,
     ) -> CrossSection:
-        """The section of drawn chambers, with walls between different supplies, sealed."""
+        """The section of drawn chambers, walled between supplies, or sealed."""
         if rules != UNSEALED:
-            return cls(grid, seal_drawing(grid, shapes, wall_steps(wall_elements), rules))
+            return cls(grid, seal_drawing(grid, shapes, wall_steps(wall_elements, rules), rules))
         return cls(grid, _walled(grid, rasterise(grid, shapes), wall_elements))
 
     @cached_property
@@ -83,5 +85,5 @@ class CrossSection:
 
 
 def _walled(grid: PolarGrid, labels: LabelArray, wall_elements: int) -> LabelArray:
-    add_walls(labels, wall_steps(wall_elements), grid.is_full_ring)
+    add_walls(labels, wall_steps(wall_elements, UNSEALED), grid.is_full_ring)
     return labels

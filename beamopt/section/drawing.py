@@ -17,6 +17,8 @@ __all__ = ["Circle", "RingPiece", "Shape", "rasterise"]
 ON_THE_EDGE = 1e-9
 """Points this near to a shape's edge [mm; rad] are inside: centroids often lie right on a side."""
 
+FIT = 1e-9  # of the outer radius; by so much corners may be too large to fit
+
 
 @dataclass(frozen=True, slots=True)
 class RingPiece:
@@ -53,7 +55,7 @@ class RingPiece:
         room = (inner + c) * np.sin(min(half, np.pi / 2))
         if between == 360 or c == 0:
             room = np.inf  # no corners, or sharp ones
-        if not (0 <= c <= (outer - inner) / 2 and c <= room):
+        if not 0 <= c <= min((outer - inner) / 2, room) + FIT * outer:
             most = (outer - inner) / 2
             if half < np.pi / 2 and np.sin(half) < 1:
                 most = min(most, inner * np.sin(half) / (1 - np.sin(half)))
@@ -87,7 +89,7 @@ def _cut(
     """
     if corner == 0:
         return np.zeros(radius.shape, dtype=np.bool_)
-    touch = np.sqrt(middle**2 - corner**2)
+    touch = np.sqrt(max(middle**2 - corner**2, 0.0))
     along, across = radius * np.cos(angle), radius * np.sin(angle)
     beyond = along > touch if is_outer else along < touch
     within = (angle < np.arctan2(corner, touch)) & beyond

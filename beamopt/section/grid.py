@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
 
-__all__ = ["PolarGrid", "angle_between"]
+__all__ = ["Domain", "PolarGrid", "angle_between"]
 
 THINNEST = 1e-6  # of the outer radius; thinner rings lose their rows to rounding
 
@@ -19,6 +20,15 @@ def angle_between(start: float, stop: float) -> float:
     """`stop` − `start` [degree]; exactly 360 where only the rounding of decimals is missing."""
     between = stop - start
     return 360.0 if abs(between - 360.0) < 1e-9 else between
+
+
+class Domain(NamedTuple):
+    """A ring, or a sector of one, as kernels need it [mm, rad]."""
+
+    inner: float
+    outer: float
+    start: float
+    span: float
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,12 @@ class PolarGrid:
     def shape(self) -> tuple[int, int]:
         """Rows (radial) and columns (angular)."""
         return self.radial, self.angular
+
+    @cached_property
+    def domain(self) -> Domain:
+        """Where elements are."""
+        start, span = float(np.radians(self.start)), float(np.radians(self.span))
+        return Domain(float(self.inner_radius), float(self.outer_radius), start, span)
 
     @cached_property
     def area(self) -> float:

@@ -11,16 +11,37 @@ from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.compiled import compiled
+from beamopt.section.cell_owners import cell_owners
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import Domain
 
-__all__ = ["count_edges", "neighbour_edges", "neighbour_ratio", "neighbours_of"]
+__all__ = [
+    "cell_neighbours",
+    "count_edges",
+    "neighbour_edges",
+    "neighbour_ratio",
+    "neighbours_of",
+]
 
 
 def neighbour_edges(points: FeaturePoints) -> IndexArray:
     """(m, 2) index pairs of neighbouring feature points, lower index first, sorted."""
     edges = delaunay_edges(points.x, points.y)
     return edges[np.lexsort((edges[:, 1], edges[:, 0]))]
+
+
+@compiled
+def cell_neighbours(px: FloatArray, py: FloatArray, domain: Domain) -> IndexArray:
+    """(m, 2) index pairs of neighbours among the feature points that have a cell in `domain`.
+
+    Lower index first, in no particular order.
+    """
+    own = cell_owners(px, py, domain)
+    edges = delaunay_edges(px[own], py[own])
+    for e in range(edges.shape[0]):
+        edges[e, 0], edges[e, 1] = own[edges[e, 0]], own[edges[e, 1]]
+    return edges
 
 
 def neighbour_ratio(different: FloatArray, same: FloatArray) -> FloatArray:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.compiled import compiled
+from beamopt.section.cell_owners import cell_owners
 from beamopt.section.counting import Counts, counts_for, take_counts
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.section.grid import PolarGrid
+from beamopt.section.grid import Domain, PolarGrid
 from beamopt.section.moments import Moments, sum_and_find_runs
 from beamopt.section.neighbours import count_edges, neighbour_ratio
 from beamopt.section.raster import Tiling, nearest_types, tiling
@@ -71,19 +72,30 @@ def phenotypes(
             np.concatenate([getattr(points, name) for points in candidates])
             for name in ("x", "y", "type")
         )
-        steps, tiles = wall_steps(wall_elements), tiling(grid)
+        steps, tiles = wall_steps(wall_elements, rules), tiling(grid)
         integrals, runs = (grid.radial_integrals, grid.angular_integrals), room_for_runs(grid)
         if rules == UNSEALED:
-            ring = grid.is_full_ring
-            about = tiles, steps, ring, *integrals
+            about = grid.domain, tiles, steps, grid.is_full_ring, *integrals
             _measure(x, y, types, ends, *about, raw, edges, kept, runs, counts)
         else:
             table = seal_table(grid, rules)
             space = work(grid, table)
-            about_seal = tiles, steps, table, space, *integrals
+            about_seal = grid.domain, tiles, steps, table, space, *integrals
             _measure_sealed(x, y, types, ends, *about_seal, raw, edges, kept, runs, counts)
     ratios = neighbour_ratio(edges[:, 0], edges[:, 1])
     return Phenotypes(Moments(raw), ratios, kept, counts.chambers, counts.asymmetry)
+
+
+@compiled
+def _with_cells(
+    x: FloatArray, y: FloatArray, types: LabelArray, begin: int, end: int, domain: Domain
+) -> tuple[FloatArray, FloatArray, LabelArray]:
+    """Places and types of one candidate's feature points that have a cell."""
+    px, py, kinds = x[begin:end], y[begin:end], types[begin:end]
+    own = cell_owners(px, py, domain)
+    if own.size == px.size:
+        return px, py, kinds
+    return px[own], py[own], kinds[own]
 
 
 @compiled
@@ -92,6 +104,7 @@ def _measure(
     y: FloatArray,
     types: LabelArray,
     ends: NDArray[np.int64],
+    domain: Domain,
     tiles: Tiling,
     wall_steps: int,
     periodic: bool,
@@ -104,14 +117,14 @@ def _measure(
     counts: Counts,
 ) -> None:
     for k in range(raw.shape[0]):
-        a, b = ends[k], ends[k + 1]
+        px, py, kinds = _with_cells(x, y, types, ends[k], ends[k + 1], domain)
         labels = kept[k if kept.shape[0] > 1 else 0]
         labels[:] = 0
-        nearest_types(x[a:b], y[a:b], types[a:b], tiles, labels)
+        nearest_types(px, py, kinds, tiles, labels)
         add_walls(labels, wall_steps, periodic)
         sum_and_find_runs(labels, runs, radial, angular, raw[k])
         take_counts(labels, runs, periodic, k, counts)
-        edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])
+        edges[k] = count_edges(delaunay_edges(px, py), kinds)
 
 
 @compiled
@@ -120,6 +133,7 @@ def _measure_sealed(
     y: FloatArray,
     types: LabelArray,
     ends: NDArray[np.int64],
+    domain: Domain,
     tiles: Tiling,
     wall_steps: int,
     table: SealTable,
@@ -133,9 +147,9 @@ def _measure_sealed(
     counts: Counts,
 ) -> None:
     for k in range(raw.shape[0]):
-        a, b = ends[k], ends[k + 1]
+        px, py, kinds = _with_cells(x, y, types, ends[k], ends[k + 1], domain)
         labels = kept[k if kept.shape[0] > 1 else 0]
-        sealed_cells(x[a:b], y[a:b], types[a:b], tiles, wall_steps, table, space, labels)
+        sealed_cells(px, py, kinds, tiles, wall_steps, table, space, labels)
         sum_and_find_runs(labels, runs, radial, angular, raw[k])
         take_counts(labels, runs, table.periodic, k, counts)
-        edges[k] = count_edges(delaunay_edges(x[a:b], y[a:b]), types[a:b])
+        edges[k] = count_edges(delaunay_edges(px, py), kinds)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, LabelArray
+from beamopt.section.cell_owners import NEAR
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 
@@ -16,8 +17,6 @@ __all__ = ["Image", "Symmetry", "mirror_symmetry", "threefold_symmetry"]
 
 Image = tuple[FloatArray, LabelArray]
 """A matrix (2, 2) for places, and the type (4,) that each type becomes."""
-
-NEAR = 1e-6  # mm; a point that is as near as this to its own image is on a mirror line or the axis
 
 ROUNDING = 1e-10  # of the first part's angle; what rounding does to an image must not bring it back
 
@@ -38,8 +37,8 @@ class Symmetry:
     def generators(self, points: FeaturePoints) -> FeaturePoints:
         """Those of `points` that the others are made from: the ones in the first part.
 
-        Points nearer than 10⁻⁶ mm to an image of theirs (on the mirror line, on the axis) are left
-        out: their cell would be shared by types that differ.
+        Points in the place of an image of theirs (on the mirror line, on the axis) are left out:
+        their cell would be shared by types that differ.
         """
         keep = self._in_first_part(points) & ~self._fixed(points)
         return FeaturePoints(points.x[keep], points.y[keep], points.type[keep])
@@ -79,7 +78,7 @@ class Symmetry:
         fixed = np.zeros(len(points), dtype=np.bool_)
         for image in self.images[1:]:
             moved = self._image(points, image)
-            fixed |= np.hypot(moved.x - points.x, moved.y - points.y) < NEAR
+            fixed |= np.hypot(moved.x - points.x, moved.y - points.y) <= NEAR
         return fixed
 
     def _image(self, points: FeaturePoints, image: Image) -> FeaturePoints:

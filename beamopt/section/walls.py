@@ -6,12 +6,13 @@ import numpy as np
 
 from beamopt.arrays import LabelArray
 from beamopt.compiled import compiled
+from beamopt.section.seal import SealRules
 
 __all__ = ["add_walls", "wall_steps"]
 
 
-def wall_steps(wall_elements: int) -> int:
-    """Elements of a wall that lie to each side of a boundary: half of them.
+def wall_steps(wall_elements: int, rules: SealRules) -> int:
+    """Elements of a wall that lie to each side of a boundary: half of them; none if sealed.
 
     Raises
     ------
@@ -19,7 +20,7 @@ def wall_steps(wall_elements: int) -> int:
     """
     if wall_elements < 0 or wall_elements % 2:
         raise ValueError(f"wall_elements = {wall_elements}: must be 0, 2, 4, …")
-    return wall_elements // 2
+    return 0 if rules.sealed else wall_elements // 2
 
 
 @compiled

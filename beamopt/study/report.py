@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.design import Design, load_design
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.files import csv_text, json_text, write_atomic, write_changed
 from beamopt.judge import Status
 from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
@@ -55,12 +55,18 @@ def write_report(
     *,
     figures: bool,
 ) -> None:
-    """Write everything beside the run folders; each file whole or not at all."""
-    write_atomic(folder / "table.csv", table_csv(outcomes))
-    write_atomic(folder / "table.md", _markdown(outcomes, plan))
+    """Write everything beside the run folders; each file whole or not at all.
+
+    The times of a study whose tables are there already stay as they are.
+    """
     spreads = _spreads(outcomes)
-    write_atomic(folder / "convergence.csv", _convergence_csv(spreads))
-    write_atomic(folder / "best_ever.csv", _best_ever_csv(outcomes))
+    tables = {
+        "table.csv": table_csv(outcomes),
+        "table.md": _markdown(outcomes, plan),
+        "convergence.csv": _convergence_csv(spreads),
+        "best_ever.csv": _best_ever_csv(outcomes),
+    }
+    new = [name for name, text in tables.items() if write_changed(folder / name, text)]
     cases = {target: _best_and_worst(folder, outcomes, target) for target in plan.targets}
     if figures:
         drawn = losses_figure(spreads, {target: title(target) for target in plan.targets})
@@ -70,6 +76,8 @@ def write_report(
             save_figure(drawn, folder / f"{target}.svg", folder / f"{target}.png")
     if plan.refine:
         write_refined(folder, outcomes, plan, figures=figures)
+    if not new and (folder / "provenance.json").exists():
+        return
     rows = [("study", seconds, "s"), ("workers", workers, "1")]
     rows += [(one.run.name, one.seconds, "s") for one in outcomes]
     rows += [

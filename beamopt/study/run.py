@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
@@ -12,7 +13,7 @@ from pydantic import Field
 
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
-from beamopt.files import json_text, write_atomic
+from beamopt.files import json_text, write_changed
 from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
@@ -21,6 +22,7 @@ from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import processes
 from beamopt.study.report import names, write_report
 from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.timing import read_times
 
 __all__ = ["run_study"]
 
@@ -83,22 +85,25 @@ def run_study(
 
 def run_one(run: Run, folder: Path) -> Outcome:
     """Run one search, or go on with it where it was left."""
-    result = optimize(run.scene(), folder / "runs" / run.name, resume=True, figures=False)
+    own = folder / "runs" / run.name
+    result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
-    last = result.history[-1]
+    last, times = result.history[-1], read_times(own / "timing.csv")
     return Outcome(
         run,
         last.best.verdict,
         last.best_ever.verdict.L,
         result.evaluations,
         tuple(record.best.verdict.L for record in result.history),
-        result.seconds,
-        None if result.refinement is None else _refined(result.refinement),
+        times.get("search", math.nan),
+        None
+        if result.refinement is None
+        else _refined(result.refinement, times.get("refinement", math.nan)),
     )
 
 
-def _refined(found: Refinement) -> RefinedOutcome:
+def _refined(found: Refinement, seconds: float) -> RefinedOutcome:
     refined = found.refined
     return RefinedOutcome(
         refined.before.L,
@@ -106,7 +111,7 @@ def _refined(found: Refinement) -> RefinedOutcome:
         refined.ratio_before,
         refined.ratio,
         refined.evaluations,
-        found.seconds,
+        seconds,
     )
 
 
@@ -135,7 +140,7 @@ def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
     if there.exists():
         _check_same(there, asked)
     clear_leftovers(folder, (there.name, *names(plan)))
-    write_atomic(there, json_text(asked.model_dump(by_alias=True)))
+    write_changed(there, json_text(asked.model_dump(by_alias=True)))
 
 
 def _check_same(there: Path, asked: StudyFile) -> None:

@@ -8,12 +8,10 @@ from enum import Enum
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.status import RodStatus
-from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
-__all__ = ["Ending", "Tried", "Within", "is_physical"]
+__all__ = ["Ending", "Source", "Tried", "Within"]
 
 
 class Ending(Enum):
@@ -26,6 +24,17 @@ class Ending(Enum):
     NO_MODEL = "no model of this law can be made of the design"
 
 
+class Source(Enum):
+    """Where an estimate of the error is from; the value is the text shown to people."""
+
+    CLOSED_FORM = (
+        "exact up to rounding: the beam is the law's own closed form; nothing was compared"
+    )
+    TIGHTER = "the change from rods solved less tightly, and the last tolerance"
+    COARSER = "the changes from solids with fewer layers, other triangles and penalties"
+    NOTHING = "no estimate: nothing was compared"
+
+
 @dataclass(frozen=True, eq=False)
 class Tried:
     """A model that was asked, and what it took of the processor [s]."""
@@ -34,6 +43,11 @@ class Tried:
     reply: Reply
     seconds: float
 
+    @property
+    def name(self) -> str:
+        """Of the model."""
+        return f"{self.model.family} {self.model.resolution}".strip()
+
 
 @dataclass(frozen=True, eq=False)
 class Within:
@@ -41,9 +55,10 @@ class Within:
 
     accuracy : asked for [mm]. ending : whether it was reached.
     reply : of the finest model; empty of tips without one.
-    estimate : (n,) error of each tip [mm]; NaN where that is not known, or there is no tip.
+    estimate : (n,) error of each tip [mm]; NaN where nothing was compared, or there is no tip.
     tried : all models that were asked, the last one's reply is the answer.
     reason : why this rung, in a sentence.
+    source : where the estimate is from.
     """
 
     question: Question
@@ -53,6 +68,7 @@ class Within:
     estimate: FloatArray
     tried: tuple[Tried, ...]
     reason: str
+    source: Source = Source.NOTHING
 
     @property
     def seconds(self) -> float:
@@ -70,16 +86,16 @@ class Within:
         """The model whose tips these are."""
         if self.reply is None:
             return "none"
-        model = next(one.model for one in self.tried if one.reply is self.reply)
-        return f"{model.family} {model.resolution}".strip()
+        return next(one.name for one in self.tried if one.reply is self.reply)
 
+    @property
+    def compared_with(self) -> tuple[str, ...]:
+        """Models that the estimate compares the chosen one with; none without an estimate."""
+        if self.source in (Source.CLOSED_FORM, Source.NOTHING):
+            return ()
+        return tuple(one.name for one in self.tried if one.reply is not self.reply)
 
-def is_physical(reason: str) -> bool:
-    """Whether a tip is missing because the actuator has none, not because it was not computed."""
-    return any(reason.startswith(one.value) for one in NO_EQUILIBRIUM)
-
-
-NO_EQUILIBRIUM = (
-    *(Status.LIMIT_POINT, Status.BUCKLED),
-    *(RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED),
-)
+    @property
+    def is_beam(self) -> bool:
+        """Whether these are the tips of a beam: a difference to the beam says nothing then."""
+        return self.source in (Source.CLOSED_FORM, Source.TIGHTER)

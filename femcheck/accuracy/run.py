@@ -27,7 +27,7 @@ __all__ = ["beam_difference", "run_accuracy"]
 
 JOURNAL = "journal.jsonl"
 NAMES = (JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json")
-TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status"
+TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
 TRIED = "model,unknowns,size,found,of"
 DIGITS = 6  # of a millimetre
 
@@ -84,13 +84,16 @@ def run_accuracy(
 
 
 def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
-    """The design's own tips (n, 3) and their distances (n,) from what was found [mm]."""
+    """The design's own tips (n, 3) and their distances (n,) from what was found [mm].
+
+    Distances are NaN where what was found is the beam itself.
+    """
     question = found.question
     try:
         beam = question.design.tips(question.pressures)
     except NoEquilibriumError:
         beam = np.full((len(question.pressures), 3), np.nan)
-    if found.reply is None:
+    if found.reply is None or found.is_beam:
         return beam, np.full(len(beam), np.nan)
     return beam, found.reply.away(beam)
 
@@ -99,8 +102,8 @@ def _write(found: Within, out: Path) -> None:
     found.question.design.save(out / "design.json")
     write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
     tried = [
-        (f"{one.model.family} {one.model.resolution}".strip(), one.reply.unknowns, one.reply.size,
-         int(one.reply.found.sum()), len(one.reply.reasons))
+        (one.name, one.reply.unknowns, one.reply.size,
+         int(one.reply.found.sum()), len(one.reply.endings))
         for one in found.tried
     ]  # fmt: skip
     write_atomic(out / "tried.csv", csv_text(TRIED, tried))
@@ -120,13 +123,13 @@ def _tips(found: Within) -> Iterator[tuple[object, ...]]:
         found.estimate,
         beam,
         difference,
-        found.reply.reasons,
+        found.reply.endings,
         strict=True,
     )
-    for pressures, tip, estimate, own, away, reason in rows:
+    for pressures, tip, estimate, own, away, ended in rows:
         numbers = [*tip, estimate, *own, away]
         rounded = [None if np.isnan(x) else round(float(x), DIGITS) + 0.0 for x in numbers]
-        yield (*pressures, *rounded, reason)
+        yield (*pressures, *rounded, str(ended), ended.key)
 
 
 def _summary(found: Within) -> dict[str, Any]:
@@ -136,8 +139,12 @@ def _summary(found: Within) -> dict[str, Any]:
         "law": found.question.law_text,
         "accuracy_mm": found.accuracy,
         "ending": found.ending.value,
+        "ended": found.ending.name,
         "reached": found.ending is Ending.REACHED,
         "chosen": found.chosen,
         "reason": found.reason,
+        "compared_with": list(found.compared_with),
+        "estimate_is": found.source.value,
+        "estimate_source": found.source.name,
         "worst_estimate_mm": None if np.isnan(worst) else float(f"{worst:.4g}"),
     }

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from femcheck.accuracy.ending import Ending, Tried, Within, is_physical
+from femcheck.accuracy.ending import Ending, Source, Tried, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.chart.lineup import STIFFER
 from femcheck.chart.measure import Measured
@@ -135,9 +135,10 @@ class _Asking:
         loaded = self.question.design.loaded_rod.loads.any
         if not loaded:
             reply = self.ask(RodOnOutline(), 1)
-            estimate = np.where(reply.found, 0.0, np.nan)
+            exact = np.where(reply.found, 0.0, np.nan)
             reason = "the law is the beam's own and nothing but pressure acts: a closed form"
-            return self._ended(reply, estimate, reason)
+            within = self._ended(reply, exact, reason, Source.CLOSED_FORM)
+            return replace(within, estimate=np.full_like(exact, np.nan))
         reason = "the law is the beam's own; loads make it a boundary-value problem"
         tightest = TIGHTEST * self.question.design.actuator.length
         tolerance = max(self.accuracy, FINER_ROD * tightest)
@@ -145,7 +146,8 @@ class _Asking:
         while True:
             tolerance = max(tolerance / FINER_ROD, tightest)
             reply = self.ask(RodOnOutline(tolerance), 1)
-            within = self._ended(reply, coarse.away(reply.tips) + tolerance, reason)
+            estimate = coarse.away(reply.tips) + tolerance
+            within = self._ended(reply, estimate, reason, Source.TIGHTER)
             if within.ending is not Ending.NOT_REACHED or tolerance == tightest:
                 return within
             coarse = reply
@@ -167,17 +169,21 @@ class _Asking:
         penalties = self._begun(levels[begin].model)
         within = self._ended(self.path[0][1], np.full_like(self.of_penalty, np.nan), reason)
         for level in levels[begin + 1 :]:
+            finer = replace(level.model, penalties=penalties)
             growth = (level.model.layers / self.path[-1][0]) ** DEARER
-            if self.tried[-1].seconds * growth > most_seconds:
+            if self.tried[-1].seconds * growth > most_seconds and not self._is_known(finer):
                 unsure = within.ending is Ending.NOT_REACHED
                 return replace(within, ending=Ending.TOO_DEAR) if unsure else within
-            fine = self._refined(replace(level.model, penalties=penalties))
+            fine = self._refined(finer)
             if len(self.path) <= pairs:
                 continue
-            within = self._ended(fine, self._estimate(), reason)
+            within = self._ended(fine, self._estimate(), reason, Source.COARSER)
             if within.ending is Ending.REACHED or level is levels[-1]:
                 return within
         raise AssertionError("the last level ends it")
+
+    def _is_known(self, model: Model) -> bool:
+        return self.kept is not None and self.kept.find(model) is not None
 
     def _first(self, levels: Sequence[Level], scale: float) -> int:
         """The first level that charts promise the accuracy of."""
@@ -226,18 +232,18 @@ class _Asking:
         left = SAFETY * np.max(constants, axis=0) * self.path[-1][0] ** -order
         return np.asarray(left + self.of_penalty + self.of_size)
 
-    def _ended(self, reply: Reply, estimate: FloatArray, reason: str) -> Within:
+    def _ended(
+        self, reply: Reply, estimate: FloatArray, reason: str, source: Source = Source.NOTHING
+    ) -> Within:
         """Reached where every tip that any model has is there, and near enough."""
         some = np.any([one.reply.found for one in self.tried], axis=0)
-        lost = [not found and not is_physical(reason) for found, reason in
-                zip(reply.found, reply.reasons, strict=True)]  # fmt: skip
+        lost = [not one.is_found and not one.status.is_settled for one in reply.endings]
         unsure = (some & ~(estimate <= self.accuracy)) | np.array(lost)
         if not some.any() and not any(lost):
-            return self._nothing(Ending.NO_TIP, f"{reason}; {reply.reason}")
+            return self._nothing(Ending.NO_TIP, f"{reason}; {reply.ended}")
         ending = Ending.NOT_REACHED if unsure.any() else Ending.REACHED
-        return Within(
-            self.question, self.accuracy, ending, reply, estimate, tuple(self.tried), reason
-        )
+        tried = tuple(self.tried)
+        return Within(self.question, self.accuracy, ending, reply, estimate, tried, reason, source)
 
     def _nothing(self, ending: Ending, reason: str) -> Within:
         estimate = np.full(len(self.question.pressures), np.nan)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,8 @@ __all__ = ["ACCURACIES", "Chart", "Row"]
 ACCURACIES = (1.0, 0.1, 0.01)
 """[mm]"""
 
+NO_MARKS: Mapping[str, str] = {}
+
 
 @dataclass(frozen=True, eq=False)
 class Row:
@@ -26,12 +28,14 @@ class Row:
     error : largest distance of a tip from the reference [mm]; NaN without any, or any reference.
     missing : tips that the reference has and the model has not.
     is_aside : whether it is finer in another respect than its family's other models.
+    mark : its resolution in a figure.
     """
 
     measured: Measured
     error: float
     missing: int
     is_aside: bool = False
+    mark: str = ""
 
     @property
     def is_whole(self) -> bool:
@@ -54,10 +58,19 @@ class Chart:
         measured: Sequence[Measured],
         reference: Reference | None,
         aside: Collection[str] = (),
+        marks: Mapping[str, str] = NO_MARKS,
     ) -> Chart:
-        """Errors of what was measured; `aside` : names of models that stand aside."""
+        """Errors of what was measured.
+
+        aside : names of models that stand aside. marks : of models in a figure, by name; the
+        resolution where there is none.
+        """
         rows = [
-            replace(_row(one, reference), is_aside=f"{one.family} {one.resolution}" in aside)
+            replace(
+                _row(one, reference),
+                is_aside=one.name in aside,
+                mark=marks.get(one.name, one.resolution),
+            )
             for one in measured
         ]
         return cls(question, tuple(rows), reference)
@@ -90,7 +103,7 @@ class Chart:
 
     def solids(self, element: str) -> Iterator[tuple[SolidModel, Row]]:
         """The solids of an element with their rows, from coarse to fine."""
-        rows = {f"{row.measured.family} {row.measured.resolution}": row for row in self.rows}
+        rows = {row.measured.name: row for row in self.rows}
         for series in line_up(self.question, [element]):
             for model in series.all:
                 if isinstance(model, SolidModel) and key_of(model) in rows:
@@ -162,7 +175,7 @@ def seconds_text(seconds: float) -> str:
 
 def _row(measured: Measured, reference: Reference | None) -> Row:
     if reference is None:
-        return Row(measured, np.nan, len(measured.reply.reasons))
+        return Row(measured, np.nan, len(measured.reply.endings))
     there = np.isfinite(reference.tips[:, 0])
     away = measured.reply.away(reference.tips)
     known = np.isfinite(away)

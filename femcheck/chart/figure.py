@@ -77,9 +77,13 @@ def _line(axes: Axes, family: str, rows: list[Row]) -> None:
     shown = np.flatnonzero(whole & ~aside & (errors > SMALLEST))
     for k in {shown[0], shown[-1]} if len(rows) > 1 and shown.size else ():
         at = (seconds[k], errors[k])
-        said = rows[k].measured.resolution.replace(" layers, size ", " / ").partition(", ")[0]
         axes.annotate(
-            said, at, xytext=(5, 5), textcoords="offset points", fontsize=6.5, color=look["color"]
+            rows[k].mark,
+            at,
+            xytext=(5, 5),
+            textcoords="offset points",
+            fontsize=6.5,
+            color=look["color"],
         )
 
 

@@ -14,7 +14,7 @@ from beamopt.errors import InputError
 from beamopt.line_journal import LineJournal
 from beamopt.model import parse
 from femcheck.chart.chart import Chart
-from femcheck.chart.lineup import line_up
+from femcheck.chart.lineup import line_up, mark_of
 from femcheck.chart.measure import Measured, is_final, key_of, read
 from femcheck.chart.reference import reference_of
 from femcheck.check.options import CheckOptions
@@ -49,10 +49,7 @@ def measured_in(journal: LineJournal) -> dict[str, Measured]:
     ------
     InputError : the journal is damaged.
     """
-    try:
-        measured = {line["model"]: read(line) for line in journal.entries}
-    except (KeyError, TypeError, ValueError):
-        raise journal.damaged() from None
+    measured = dict(journal.read(lambda line: (line["model"], read(line))))
     return {name: one for name, one in measured.items() if is_final(one)}
 
 
@@ -67,7 +64,8 @@ def chart_of(question: Question, measured: Mapping[str, Measured]) -> Chart:
         measured[key_of(model)] for one in series for model in one.all if key_of(model) in measured
     ]
     aside = {key_of(model) for one in series for model in (one.sized, one.stiffer) if model}
-    return Chart.of(question, known, reference_of(question, series, measured), aside)
+    marks = {key_of(model): mark_of(model) for one in series for model in one.all}
+    return Chart.of(question, known, reference_of(question, series, measured), aside, marks)
 
 
 def read_chart(folder: Path) -> Chart:
@@ -79,14 +77,16 @@ def read_chart(folder: Path) -> Chart:
     """
     file = folder / JOURNAL
     try:
-        with file.open(encoding="utf-8") as stream:
-            asked = json.loads(stream.readline())
-        if asked["schema"] != SCHEMA:
-            raise ValueError
-        question = _question(asked, file)
-    except (OSError, ValueError, KeyError, TypeError):
+        journal = LineJournal(file, None, KIND)
+    except OSError:
         raise InputError(file, "", None, "no journal of a chart") from None
-    return chart_of(question, measured_in(LineJournal(file, asked, KIND)))
+    try:
+        if journal.asked["schema"] != SCHEMA:
+            raise ValueError
+        question = _question(journal.asked, file)
+    except (ValueError, KeyError, TypeError):
+        raise InputError(file, "", None, "no journal of a chart") from None
+    return chart_of(question, measured_in(journal))
 
 
 def _question(asked: dict[str, Any], file: Path) -> Question:

@@ -13,7 +13,7 @@ from femcheck.models.question import Question
 from femcheck.models.reply import Model
 from femcheck.models.solid import SolidModel
 
-__all__ = ["FAMILIES", "Series", "line_up"]
+__all__ = ["FAMILIES", "Series", "line_up", "mark_of"]
 
 GRIDS = ((32, 90), (64, 180), (128, 360), (256, 720), (512, 1440))
 RODS = {
@@ -92,6 +92,13 @@ def _all(question: Question) -> Iterator[Series]:
     yield Series("tet10", tuple(solids("tet10", n, size) for n, size in refined))
     yield Series("tet4", tuple(solids("tet4", n, size) for n, size in ((8, 1.0), (16, 0.5))))
     yield Series("felupe", tuple(FelupeModel(layers, COARSEST) for layers in (2,)))
+
+
+def mark_of(model: Model) -> str:
+    """The resolution in as few characters as a figure has room for: layers / size of a solid."""
+    if isinstance(model, SolidModel | FelupeModel):
+        return f"{model.layers} / {model.size:g}"
+    return model.resolution
 
 
 def _solid(question: Question, element: str, layers: int, size: float) -> SolidModel:

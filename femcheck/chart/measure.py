@@ -11,6 +11,8 @@ import numpy as np
 from beamopt.provenance import provenance
 from femcheck.check.case import forget_workshops
 from femcheck.check.folder import PACKAGES
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.old_wordings import ended_of
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply, cpu_seconds
@@ -33,6 +35,11 @@ class Measured:
     reply: Reply
     seconds: float
     made_with: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its model's, as `key_of` has it."""
+        return f"{self.family} {self.resolution}"
 
 
 def key_of(model: Model) -> str:
@@ -81,14 +88,14 @@ def written(measured: Measured) -> dict[str, Any]:
     """As a line of a journal."""
     reply = measured.reply
     return {
-        "model": f"{measured.family} {measured.resolution}",
+        "model": measured.name,
         "family": measured.family,
         "resolution": measured.resolution,
         "seconds": measured.seconds,
         "unknowns": reply.unknowns,
         "size": reply.size,
         "tips": [[None if np.isnan(x) else x for x in tip] for tip in reply.tips.tolist()],
-        "reasons": list(reply.reasons),
+        "endings": [[one.key, one.load, one.detail] for one in reply.endings],
         "made_with": measured.made_with,
     }
 
@@ -103,19 +110,27 @@ def read(line: dict[str, Any]) -> Measured:
     tips = np.array(
         [[np.nan if x is None else float(x) for x in tip] for tip in line["tips"]]
     ).reshape(-1, 3)
-    reasons = tuple(str(reason) for reason in line["reasons"])
-    if len(reasons) != len(tips):
-        raise ValueError("a reason for every tip")
-    reply = Reply(tips, reasons, int(line["unknowns"]), str(line["size"]))
+    endings = _endings(line)
+    if len(endings) != len(tips):
+        raise ValueError("an ending for every tip")
+    reply = Reply(tips, endings, int(line["unknowns"]), str(line["size"]))
     seconds, about = float(line["seconds"]), str(line["made_with"])
     return Measured(line["family"], line["resolution"], reply, seconds, about)
 
 
-AGAIN = (Status.TIME_OUT, Status.STOPPED)
+def _endings(line: dict[str, Any]) -> tuple[Ended, ...]:
+    if "endings" not in line:
+        return tuple(ended_of(str(text)) for text in line["reasons"])
+    return tuple(
+        Ended.of_key(str(key), None if load is None else float(load), str(detail))
+        for key, load, detail in line["endings"]
+    )
 
 
 def is_final(measured: Measured) -> bool:
-    """Whether nothing was cut short that would be tried again."""
-    return not any(
-        reason.startswith(one.value) for reason in measured.reply.reasons for one in AGAIN
-    )
+    """Whether nothing was cut short: by a clock, a process that died, or too little work allowed.
+
+    A reply does not say how much work that was, so that it is asked for again in any case.
+    """
+    statuses = {one.status for one in measured.reply.endings}
+    return Status.WORK_LIMIT not in statuses and not any(one.is_interrupted for one in statuses)

@@ -24,6 +24,7 @@ from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
 from femcheck.check.folder import PACKAGES
+from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, nothing
@@ -31,7 +32,7 @@ from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
-CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status"
+CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
 GROWTH = 1.8  # a finer model of a series takes at least so many times as long
 
@@ -41,9 +42,12 @@ Pool = Callable[[int], AbstractContextManager[Executor]]
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """seconds : of processor time that a model may be expected to take; others are left out."""
+    """seconds : of processor time that a model may be expected to take; others are left out.
 
-    seconds: float = 1800.0
+    None are left out by default.
+    """
+
+    seconds: float = np.inf
 
 
 def run_chart(
@@ -119,7 +123,7 @@ def _ask(
                         keep(measured_one)
             except BrokenProcessPool:
                 for _, model in running.values():  # one of them is to blame; --resume asks again
-                    keep(_without(question, model, Status.STOPPED.value))
+                    keep(_without(question, model, Ended(Status.STOPPED)))
 
 
 def _begin(
@@ -139,17 +143,28 @@ def _begin(
         waiting = left[one.family]
         if one.family in busy:  # what is coming tells what the next one will cost
             continue
-        while waiting and _guessed(one, waiting[0], measured) > budget.seconds:
-            reason = f"left out: expected to take more than {budget.seconds:g} s"
-            keep(_without(question, waiting.pop(0), reason))
+        while waiting and (why := _too_dear(one, waiting[0], measured, budget)):
+            keep(_without(question, waiting.pop(0), why))
         if waiting and len(running) < workers:
             model = waiting.pop(0)
             running[executor.submit(measure, question, model)] = one.family, model
     return bool(running)
 
 
+def _too_dear(
+    series: Series, model: Model, measured: dict[str, Measured], budget: Budget
+) -> Ended | None:
+    """Why a model is left out; None where it is asked."""
+    guess = _guessed(series, model, measured)
+    if guess == np.inf:
+        return Ended(NoReply.UNKNOWN_COST)
+    if guess > budget.seconds:
+        return Ended(NoReply.TOO_DEAR, detail=f"more than {budget.seconds:g} s")
+    return None
+
+
 def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:
-    """Seconds that a model will take, at least; infinite where a coarser one was left out."""
+    """Seconds that a model will take, at least; infinite where a coarser one has none."""
     if model in series.models:
         coarser = series.models[: series.models.index(model)]
         known = [measured[key_of(one)].seconds for one in coarser]
@@ -165,8 +180,8 @@ def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> flo
     return np.inf if np.isnan(guess) else guess
 
 
-def _without(question: Question, model: Model, reason: str) -> Measured:
-    return Measured(model.family, model.resolution, nothing(question, reason), float("nan"))
+def _without(question: Question, model: Model, why: Ended) -> Measured:
+    return Measured(model.family, model.resolution, nothing(question, why), float("nan"))
 
 
 def _write(chart: Chart, out: Path, workers: int) -> None:
@@ -190,4 +205,4 @@ def _cells(row: Row) -> tuple[object, ...]:
     error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
     found = int(reply.found.sum())
     cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
-    return (*cells, len(reply.reasons), reply.size or None, reply.reason)
+    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)

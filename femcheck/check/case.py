@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
+from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
@@ -103,7 +104,7 @@ class Case:
 
     guess : shape to try first; None starts from `start`.
     start : an equilibrium and its pressures; None is the unloaded body.
-    seconds : time limit [s].
+    limits : of load steps and path together.
     smallest : share of the load below which load steps are given up, and the path is followed.
     """
 
@@ -111,7 +112,7 @@ class Case:
     pressures: FloatArray
     guess: FloatArray | None
     start: tuple[State, FloatArray] | None
-    seconds: float
+    limits: Limits = field(default_factory=Limits)
     smallest: float = LoadSteps().smallest
 
 
@@ -132,6 +133,10 @@ class CaseResult:
     def status(self) -> Status:
         """How it ended."""
         return self.outcome.status
+
+    def is_final(self, limits: Limits) -> bool:
+        """Whether it would end alike if it was solved again under these limits."""
+        return not limits.repeats(self.status, self.outcome.statistics)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,10 +175,13 @@ def solve_case(case: Case) -> CaseResult:
     shop = workshop(case.solid)
     start = case.start or (shop.problem.rest(), np.zeros(3))
     guess = None if case.guess is None else shop.shapes.state(case.guess)
-    steps = LoadSteps(smallest=case.smallest, seconds=case.seconds)
-    outcome = steps.walk(shop.problem, shop.shapes, start, case.pressures, shop.solver, guess)
-    if outcome.status in LOST and case.pressures.any():
-        outcome = _followed(shop, case, outcome)
+    steps, budget = LoadSteps(smallest=case.smallest), case.limits.begin()
+    outcome = steps.walk(
+        shop.problem, shop.shapes, start, case.pressures, shop.solver, guess, budget
+    )
+    left = _is_beyond_law(shop.problem, outcome)
+    if (outcome.status in LOST or left) and case.pressures.any():
+        outcome = _followed(shop, case, outcome, budget)
     if outcome.state is None:
         return CaseResult(outcome)
     return CaseResult(
@@ -184,12 +192,22 @@ def solve_case(case: Case) -> CaseResult:
     )
 
 
-def _followed(shop: Workshop, case: Case, failed: Outcome) -> Outcome:
-    """Where load steps found nothing: the path from rest, which tells a branch from a failure."""
+def _is_beyond_law(problem: Equilibrium, found: Outcome) -> bool:
+    """Whether an equilibrium was found that is stretched beyond what the law describes."""
+    most = problem.law.most_stretch
+    if found.state is None or math.isinf(most):
+        return False
+    return problem.largest_stretch(found.state)[0] > most
+
+
+def _followed(shop: Workshop, case: Case, failed: Outcome, budget: Budget) -> Outcome:
+    """Where load steps found nothing, or what no law describes: the path from rest, which tells."""
     spent = failed.statistics
     load = float(np.abs(case.pressures).max())
-    steps = PathSteps(seconds=case.seconds - spent.seconds)
-    path = steps.trace(shop.problem, shop.shapes, case.pressures / load, [load], shop.solver)
+    direction = case.pressures / load
+    path = PathSteps().trace(
+        shop.problem, shop.shapes, direction, [load], shop.solver, budget=budget
+    )
     spent.add(path.statistics)
     spent.seconds += path.statistics.seconds
     found = path.stops[0]

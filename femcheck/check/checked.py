@@ -33,6 +33,14 @@ class Checked:
     results: dict[Key, CaseResult]
 
     @property
+    def certain(self) -> bool:
+        """Whether what mesh and penalty leave is too small to turn the verdict over."""
+        compared = self.comparison
+        if compared is None or compared.unanswered:
+            return False
+        return not compared.moves or abs(compared.worst - self.options.agree) > compared.left
+
+    @property
     def holds(self) -> bool:
         """Whether every loaded case has an answer and agrees."""
         compared = self.comparison

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.arrays import FloatArray, IndexArray
 from beamopt.workspace import NODES, node_index
 from femcheck.check.case import CaseResult
 from femcheck.check.schedule import Key
@@ -34,6 +34,7 @@ class Tips:
     volume_ratios : (27, 3) of each supply's chambers to their undeformed volume; NaN without any.
     statuses : (27,) how each case ended.
     reached : (27,) share of the load at the last equilibrium; 1 with an answer.
+    iterations : (27,) that were spent on it.
     """
 
     mesh: str
@@ -42,6 +43,7 @@ class Tips:
     volume_ratios: FloatArray
     statuses: tuple[Status, ...]
     reached: FloatArray
+    iterations: IndexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +91,12 @@ class Comparison:
 
         Where the tip hardly moves, over a hundredth of the largest displacement.
         """
+        return np.asarray(self.difference / self._moved)
+
+    @property
+    def _moved(self) -> FloatArray:
         least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
-        return np.asarray(self.difference / np.maximum(self.displacement, least))
+        return np.asarray(np.maximum(self.displacement, least))
 
     @property
     def moves(self) -> bool:
@@ -127,6 +133,19 @@ class Comparison:
         stiffest = max(one.penalty for one in self.solids if np.isfinite(one.penalty))
         change = self.final.tips - self.solid("standard", stiffest).tips
         return np.asarray(np.linalg.norm(change, axis=1))
+
+    @property
+    def left(self) -> float:
+        """Largest share that mesh and penalty may still move a tip by, over displacement.
+
+        The estimated error of the standard mesh, or where its order is not known all that changes
+        from the coarse mesh to it, and what extrapolating in 1/c did. NaN without an answer.
+        """
+        change = np.linalg.norm(self.final.tips - self.solid("coarse", np.inf).tips, axis=1)
+        mesh = change if self.order is None else self.discretisation
+        shares = (mesh + self.penalty_error) / self._moved
+        known = shares[self.is_loaded & ~np.isnan(shares)]
+        return float(known.max()) if known.size else float("nan")
 
     @property
     def unanswered(self) -> int:
@@ -166,16 +185,18 @@ def compare(
 def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:
     tips, ratios = np.full((NODES, 3), np.nan), np.full((NODES, 3), np.nan)
     statuses, reached = [Status.STOPPED] * NODES, np.zeros(NODES)
+    iterations = np.zeros(NODES, dtype=np.int64)
     centroid = np.append(stage.solid.section.moments.centroid, 0.0)
     undeformed = stage.solid.section.moments.chamber_areas * subject.design.actuator.length
     for node in all_nodes():
         result, row = results[stage.name, node], node_index(*node)
         statuses[row], reached[row] = result.status, result.outcome.reached
+        iterations[row] = result.outcome.statistics.iterations
         if result.outcome.state is not None and result.volumes is not None:
             tips[row] = result.outcome.state.tip - centroid
             with np.errstate(invalid="ignore", divide="ignore"):
                 ratios[row] = np.where(undeformed > 0, result.volumes / undeformed, np.nan)
-    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached)
+    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached, iterations)
 
 
 def _extrapolated(low: Tips, high: Tips) -> Tips:
@@ -188,4 +209,5 @@ def _extrapolated(low: Tips, high: Tips) -> Tips:
         for first, second in zip(low.statuses, high.statuses, strict=True)
     ]
     reached = np.minimum(low.reached, high.reached)
-    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached)
+    spent = low.iterations + high.iterations
+    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached, spent)

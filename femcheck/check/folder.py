@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import claim_folder, clear_leftovers, differences
 from beamopt.model import read_json
 from beamopt.provenance import provenance
 from femcheck.check.case import Solid
@@ -48,7 +47,7 @@ class CheckFolder:
         there = path / MARKER
         if there.exists():
             kept = read_json(there)
-            for key, before, now in _differences(kept, json.loads(json_text(asked))):
+            for key, before, now in differences(kept, json.loads(json_text(asked))):
                 said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
                 raise InputError(there, key, before, said)
             design = path / "design.json"
@@ -91,13 +90,3 @@ class CheckFolder:
         """Take away pictures and meshes of a verdict that had an answer before."""
         for name in PICTURES:
             (self.path / name).unlink(missing_ok=True)
-
-
-def _differences(before: Any, now: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Keys of nested tables whose values differ, with both values."""
-    if isinstance(before, dict) and isinstance(now, dict):
-        for name in before | now:
-            inner = f"{key}.{name}" if key else name
-            yield from _differences(before.get(name), now.get(name), inner)
-    elif before != now:
-        yield key, before, now

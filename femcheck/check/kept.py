@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
-import struct
-import zipfile
-import zlib
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from beamopt.files import write_atomic
 from femcheck.check.case import CaseResult
 from femcheck.check.schedule import Key
+from femcheck.check.store import read_arrays, write_arrays
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.state import State
@@ -28,7 +26,7 @@ def case_file(folder: Path, key: Key) -> Path:
 
 def write_case(folder: Path, key: Key, result: CaseResult, digest: str) -> None:
     """Keep a result of the solid that `digest` tells from others."""
-    outcome, stream = result.outcome, io.BytesIO()
+    outcome = result.outcome
     spent = outcome.statistics
     arrays = {
         "digest": np.array(digest),
@@ -51,35 +49,31 @@ def write_case(folder: Path, key: Key, result: CaseResult, digest: str) -> None:
             "volumes": result.volumes,
             "strain_energy": np.array(result.strain_energy),
         }
-    np.savez(stream, allow_pickle=False, **arrays)
-    write_atomic(case_file(folder, key), stream.getvalue())
+    write_arrays(case_file(folder, key), arrays)
 
 
 def read_case(folder: Path, key: Key, shapes: Shapes, digest: str) -> CaseResult | None:
     """A kept result; None where there is none, none that can be read, or one of another solid."""
-    try:
-        data = io.BytesIO(case_file(folder, key).read_bytes())
-        with np.load(data, allow_pickle=False) as kept:
-            if str(kept["digest"]) != digest:
-                return None
-            steps, iterations = kept["counts"].tolist()
-            statistics = Statistics(steps, iterations, *kept["seconds"].tolist())
-            status = Status[str(kept["status"])]
-            negative = int(kept["negative"])
-            state = State(kept["x"], kept["tip"], kept["turn"]) if "x" in kept else None
-            outcome = Outcome(
-                status,
-                state,
-                float(kept["reached"]),
-                float(kept["residual"]),
-                None if negative < 0 else negative,
-                statistics,
-            )
-            if state is None:
-                return None if status is Status.CONVERGED else CaseResult(outcome)
-            energy = float(kept["strain_energy"])
-            return CaseResult(outcome, shapes.of(state), kept["volumes"], energy)
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):
+    return read_arrays(case_file(folder, key), partial(_case, shapes, digest))
+
+
+def _case(shapes: Shapes, digest: str, kept: Any) -> CaseResult | None:
+    if str(kept["digest"]) != digest:
         return None
-    except (RuntimeError, SyntaxError, zlib.error, struct.error):
-        return None  # headers with a bit turned over: encrypted, compressed, of no size
+    steps, iterations = kept["counts"].tolist()
+    statistics = Statistics(steps, iterations, *kept["seconds"].tolist())
+    status = Status[str(kept["status"])]
+    negative = int(kept["negative"])
+    state = State(kept["x"], kept["tip"], kept["turn"]) if "x" in kept else None
+    outcome = Outcome(
+        status,
+        state,
+        float(kept["reached"]),
+        float(kept["residual"]),
+        None if negative < 0 else negative,
+        statistics,
+    )
+    if state is None:
+        return None if status is Status.CONVERGED else CaseResult(outcome)
+    energy = float(kept["strain_energy"])
+    return CaseResult(outcome, shapes.of(state), kept["volumes"], energy)

@@ -23,7 +23,6 @@ from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject, geometry_steps
 from femcheck.check.tables import tables_of
 from femcheck.check.work import solve_all
-from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -31,8 +30,6 @@ from femcheck.mesh.quality import quality_of
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["check_design"]
-
-AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a check that goes on tries these once more
 
 Progress = Callable[[int, int, str], None]
 Pool = Callable[[int], AbstractContextManager[Executor]]
@@ -69,7 +66,7 @@ def check_design(
         _write(folder, checked)
         return checked
     stages = _stages(subject, options, *sections)
-    schedule = Schedule(stages, subject.design.pressures, options.seconds)
+    schedule = Schedule(stages, subject.design.pressures, options.limits)
     _take_kept(folder.cases, schedule)
     total = len(schedule.keys)
     digests = {stage.name: stage.solid.digest for stage in stages}
@@ -118,12 +115,19 @@ def _write(folder: CheckFolder, checked: Checked) -> None:
 
 
 def _take_kept(folder: Path, schedule: Schedule) -> None:
-    """Put the cases that were solved before among the results."""
+    """Put the cases that were solved before among the results.
+
+    What a limit ended is solved again, and with it all that builds on it: it began elsewhere then.
+    """
+    again: set[Key] = set()
     for stage in schedule.stages:
         shapes = Shapes(stage.solid.body())
         for key in (key for key in schedule.keys if key[0] == stage.name):
             known = read_case(folder, key, shapes, stage.solid.digest)
-            if known is not None and known.status not in AGAIN:
+            is_final = known is None or known.is_final(schedule.limits)
+            if not is_final or schedule.builds_on(key, again):
+                again.add(key)
+            elif known is not None:
                 schedule.results[key] = known
 
 

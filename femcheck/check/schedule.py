@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -13,6 +13,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from femcheck.check.case import Case, CaseResult, rest_slopes, solve_case, stopped
 from femcheck.check.stage import Stage
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.pressure_tree import Node, all_nodes, ancestors, prediction
 from femcheck.solid.state import State
 
@@ -30,14 +31,14 @@ class Schedule:
     ----------
     stages : in the order in which they are begun.
     levels : three pressure levels [kPa].
-    seconds : time limit of a case [s].
+    limits : of a case.
     results : of the cases that are done.
     slopes : of the stages' shapes at rest.
     """
 
     stages: Sequence[Stage]
     levels: tuple[float, float, float]
-    seconds: float
+    limits: Limits
     results: dict[Key, CaseResult] = field(default_factory=dict)
     slopes: dict[str, FloatArray | None] = field(default_factory=dict)
 
@@ -54,13 +55,20 @@ class Schedule:
 
         What else is known by then must not matter: it depends on how many are solved at once.
         """
+        return all(self._is_known(name, source) for name, source in self._sources(key))
+
+    def builds_on(self, key: Key, others: Collection[Key]) -> bool:
+        """Whether a case is predicted from, or may start from, any of the others."""
+        return any((name, source) in others for name, source in self._sources(key))
+
+    def _sources(self, key: Key) -> list[tuple[str, Node | int]]:
+        """Cases, and supplies whose slope at rest is meant, each with the name of its stage."""
         name, node = key
         follows = self._stage[name].follows
         needed = [source for _, source in prediction(node, self.levels)]
-        known = all(self._is_known(name, source) for source in (*needed, *ancestors(node)))
-        if follows is None or not known:
-            return known
-        return all(self._is_known(follows, source) for source in (*needed, node))
+        own = [(name, source) for source in (*needed, *ancestors(node))]
+        led = [] if follows is None else [(follows, source) for source in (*needed, node)]
+        return own + led
 
     def _is_known(self, name: str, source: Node | int) -> bool:
         return name in self.slopes if isinstance(source, int) else (name, source) in self.results
@@ -90,7 +98,7 @@ class Schedule:
         """The case with its guess and its start."""
         name, node = key
         solid = self._stage[name].solid
-        return Case(solid, self.pressures(node), self._guess(key), self._start(key), self.seconds)
+        return Case(solid, self.pressures(node), self._guess(key), self._start(key), self.limits)
 
     def _start(self, key: Key) -> tuple[State, FloatArray] | None:
         """The nearest equilibrium on the way back to the first node."""

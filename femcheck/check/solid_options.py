@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, field
 
 from beamopt.errors import InputError
+from femcheck.continuation.limits import Limits
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
 from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
@@ -24,7 +26,7 @@ class SolidOptions:
     layers : of the standard mesh; None takes as many as the beam's turn needs.
     grading : thickness of the middle layers over that of the end ones.
     sizes : of the standard section mesh.
-    seconds : time limit of a case [s].
+    iterations, seconds : limits of a case or a ray, see `Limits`.
     solver : "auto", "pardiso" or "superlu".
     mesher : how gmsh is called.
 
@@ -38,7 +40,8 @@ class SolidOptions:
     layers: int | None = None
     grading: float = 1.5
     sizes: SectionSizes = field(default_factory=SectionSizes)
-    seconds: float = 600.0
+    iterations: int = Limits().iterations
+    seconds: float = math.inf
     solver: str = "auto"
     mesher: Mesher = field(default_factory=Mesher)
 
@@ -49,8 +52,17 @@ class SolidOptions:
             raise InputError("", "agree", self.agree, "above 0 and at most 1 (100 %)")
         if self.layers is not None and not 2 <= self.layers <= 64:
             raise InputError("", "layers", self.layers, "2…64")
+        if self.iterations < 1:
+            raise InputError("", "iterations", self.iterations, "at least 1")
+        if not self.seconds > 0:
+            raise InputError("", "seconds", self.seconds, "above 0 s")
         if not 0.1 <= self.sizes.factor <= 10:
             raise InputError("", "size", self.sizes.factor, "0.1…10")
+
+    @property
+    def limits(self) -> Limits:
+        """What a case or a ray may take; no part of the question."""
+        return Limits(self.iterations, self.seconds)
 
     @property
     def solid_question(self) -> dict[str, object]:

@@ -11,21 +11,22 @@ import numpy as np
 from beamopt.files import csv_text, json_text
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
+from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 
-__all__ = ["COMPARE", "cells", "plain", "summary", "tables_of", "verdict"]
+__all__ = ["COMPARE", "both", "cells", "plain", "summary", "tables_of", "verdict"]
 
 DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
 
 COMPARE = (
     "law,c,nu,mesh,p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,"
     "difference_of_length,difference_of_displacement,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended"
 )
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
     "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
 )
 
 
@@ -66,7 +67,7 @@ def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(solid.volume_ratios[row]),
-                solid.statuses[row].value,
+                *both(solid.statuses[row]),
             )
 
 
@@ -88,10 +89,17 @@ def _table_csv(compared: Comparison) -> str:
         ]
     )
     pressures = subject.pressures.tolist()
-    rows = zip(pressures, columns, compared.final.statuses, strict=True)
+    final = compared.final
+    rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
     return csv_text(
-        TABLE, [(*map(plain, at), *cells(row), status.value) for at, row, status in rows]
+        TABLE,
+        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
     )
+
+
+def both(status: Status) -> tuple[str, str]:
+    """Cells of the columns "status" and "ended": the text for people, the key for programs."""
+    return status.value, Ended(status).key
 
 
 def plain(value: float) -> object:
@@ -122,8 +130,12 @@ def verdict(checked: Checked) -> str:
     worst, median = (f"{100 * value:.3g} %" for value in (compared.worst, compared.median))
     if not compared.moves:
         return "nothing to compare: no tip moves at any pressure"
-    said = f"worst {worst}, median {median} of displacement (asked {agree})"
-    return f"agrees: {said}" if checked.holds else f"differs: {said}"
+    known = not math.isnan(compared.left)
+    left = f"; mesh and penalty leave up to {100 * compared.left:.3g} %" if known else ""
+    said = f"worst {worst}, median {median} of displacement (asked {agree}{left})"
+    why = "what they leave could turn it over" if known else "it stands on one mesh"
+    sure = "" if checked.certain else f"; uncertain, as {why}"
+    return f"{'agrees' if checked.holds else 'differs'}: {said}{sure}"
 
 
 def _loaded(compared: Comparison) -> int:
@@ -140,6 +152,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "kind": "implementation",
             "law": options.law,
             "holds": checked.holds,
+            "certain": checked.certain,
             "text": verdict(checked),
             "agree": options.agree,
         },
@@ -147,7 +160,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
             "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
             "islands": len(outline.islands),
-            "faults": [str(fault) for fault in outline.faults],
+            "faults": [str(fault) for fault in checked.subject.design.findings],
         },
     }
     if subject.sealing_moved is not None:
@@ -191,6 +204,7 @@ def _differences(compared: Comparison) -> dict[str, Any]:
         "worst_discretisation_mm": most(compared.discretisation),
         "worst_assumptions_mm": most(compared.assumptions),
         "worst_penalty_mm": most(compared.penalty_error),
+        "worst_left_of_displacement": _number(compared.left),
     }
 
 
@@ -211,6 +225,7 @@ def _solid(checked: Checked, index: int) -> dict[str, Any]:
         "layers": layers,
         "unknowns": _unknowns(stage.solid),
         "iterations": sum(result.outcome.statistics.iterations for result in results),
+        "most_iterations": max(result.outcome.statistics.iterations for result in results),
         "converged": sum(result.status is Status.CONVERGED for result in results),
         "stability": _stability(stable),
     }
@@ -228,7 +243,7 @@ def _stability(negative: list[int | None]) -> str:
 
 
 def _timing(checked: Checked) -> Iterator[tuple[str, float, str]]:
-    """What the cases cost, summed over processes."""
+    """Processor time of the cases, summed over processes."""
     for stage in checked.stages:
         spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

@@ -9,6 +9,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
@@ -79,6 +80,7 @@ def _questions(request: RunRequest, options: LawChoice) -> list[Question]:
                 options.law_for(design.actuator)
             except InputError as error:
                 raise InputError(name, error.key, error.value, error.allowed) from None
+        say_findings(design, name if len(request.designs) > 1 else "")
         questions.append(Question.of(name, design, options))
     refuse_twins(request, [question.name for question in questions])
     return questions
@@ -121,6 +123,8 @@ def _holds(found: Within, agree: float) -> bool:
     """Whether the accuracy was reached and the beam is near enough, as in a check."""
     if found.ending is not Ending.REACHED or found.reply is None:
         return False
+    if found.is_beam:
+        return True
     beam, difference = beam_difference(found)
     straight = np.array([0.0, 0.0, found.question.design.actuator.length])
     moved = np.linalg.norm(beam - straight, axis=1)
@@ -130,13 +134,13 @@ def _holds(found: Within, agree: float) -> bool:
 
 def _report(found: Within, folder: Path) -> None:
     console.print(f"[bold]{escape(found.question.name)}[/]")
-    reached = "" if np.isnan(found.worst) else f": estimated error up to {found.worst:.2g} mm"
     lines = [
         ("law", found.question.law_text),
         ("rung", found.reason),
         ("chosen", f"{found.chosen}, {seconds_text(found.seconds)} of processor time in all"),
         *(("tried", _tried(one)) for one in _described(found)),
-        (f"{found.accuracy:g} mm", f"{found.ending.value}{reached}"),
+        (f"{found.accuracy:g} mm", found.ending.value),
+        ("error", _error(found)),
         ("files", f"{folder}/ (tips.csv, tried.csv, summary.json, …)"),
     ]
     for name, text in lines:
@@ -145,11 +149,17 @@ def _report(found: Within, folder: Path) -> None:
         console.print(_table(found))
 
 
+def _error(found: Within) -> str:
+    """What is known of the error, and from which comparison."""
+    if np.isnan(found.worst):
+        return found.source.value
+    others = ", ".join(found.compared_with)
+    source = f"{found.source.value} ({found.chosen} against {others})"
+    return f"estimated up to {found.worst:.2g} mm: {source}"
+
+
 def _described(found: Within) -> list[tuple[str, str, float]]:
-    return [
-        (f"{one.model.family} {one.model.resolution}".strip(), one.reply.size, one.seconds)
-        for one in found.tried
-    ]
+    return [(one.name, one.reply.size, one.seconds) for one in found.tried]
 
 
 def _tried(one: tuple[str, str, float]) -> str:
@@ -172,6 +182,6 @@ def _table(found: Within) -> Table:
             *("–" if np.isnan(x) else f"{x:.3f}" for x in tip),
             "–" if np.isnan(estimate) else f"{estimate:.2g}",
             "–" if np.isnan(away) else f"{away:.3f}",
-            found.reply.reasons[row],
+            str(found.reply.endings[row]),
         )
     return table

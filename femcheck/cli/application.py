@@ -99,13 +99,19 @@ def run_designs(
         str, typer.Option(help="wedge18; hex27, tet10 and tet4 to compare.")
     ] = "wedge18",
     solver: Annotated[str, typer.Option(help="auto, pardiso or superlu.")] = "auto",
-    seconds: Annotated[float, typer.Option(metavar="S", help="Time limit of one case.")] = 600.0,
+    iterations: Annotated[
+        int,
+        typer.Option(min=1, help="Work limit of one case or ray: Newton's iterations."),
+    ] = 2000,
+    seconds: Annotated[
+        float, typer.Option(metavar="S", help="Clock limit of one case besides; none if left out.")
+    ] = math.inf,
     gmsh: Annotated[
         str | None, typer.Option(help="The gmsh executable; found by itself if left out.")
     ] = None,
     gmsh_seconds: Annotated[
-        float, typer.Option(metavar="S", help="Time limit of one mesh.")
-    ] = 60.0,
+        float, typer.Option(metavar="S", help="Clock limit of one mesh, against a gmsh that hangs.")
+    ] = 600.0,
     accuracy: Annotated[
         str | None,
         typer.Option(
@@ -117,7 +123,7 @@ def run_designs(
         str, typer.Option(help="With --accuracy: beam or solid, instead of the cheaper one.")
     ] = "auto",
     budget: Annotated[
-        float, typer.Option(metavar="S", help="With --accuracy: longest a model may take.")
+        float, typer.Option(metavar="S", help="With --accuracy: processor time of one model.")
     ] = math.inf,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
         False
@@ -147,6 +153,7 @@ def run_designs(
             size=size,
             element=element,
             solver=solver,
+            iterations=iterations,
             seconds=seconds,
             gmsh=gmsh,
             gmsh_seconds=gmsh_seconds,
@@ -177,8 +184,8 @@ def chart_models(
         typer.Option(help="raster, beam, wedge18, …; may be given again. All if left out."),
     ] = None,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="Models expected to take longer are left out.")
-    ] = 1800.0,
+        float, typer.Option(metavar="S", help="Leave out models expected to need more of the CPU.")
+    ] = math.inf,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Models asked at once.")] = 2,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on; where all is there, only draw it again.")
@@ -261,7 +268,7 @@ def write_baselines(
     workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
     force: Annotated[bool, typer.Option("--force", help="Write over baselines there.")] = False,
 ) -> None:
-    """Write what every rung says of designs today, with tolerances from error estimates."""
+    """Write what every rung says of designs, with tolerances from error estimates."""
     from femcheck.cli.regression import baseline_command
 
     baseline_command(designs or [], out, meshes, workers, force=force)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.model import parse
@@ -40,10 +40,11 @@ class ChartRequest:
 
 def chart_command(request: ChartRequest) -> None:
     """Ask every model, show progress, and say which is the cheapest."""
-    if not 0 < request.seconds < np.inf:
+    if not request.seconds > 0:
         raise InputError("--seconds", "", request.seconds, "above 0 s")
     law = options_of(request.law)
     name, design = named_design(request.source)
+    say_findings(design)
     if request.levels is not None:
         data = design.model_dump(by_alias=True, exclude_none=True)
         design = parse(type(design), data | {"pressures": levels_of(request.levels)}, "--levels")

@@ -11,6 +11,8 @@ from rich.table import Table
 
 from beamopt.cli.progress import console
 from femcheck.cli.report import notes_of
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.outcome import Status
 from femcheck.material.catalogue import constants_of
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.verdict import advice, verdict
@@ -68,9 +70,13 @@ def _combinations(found: Prediction) -> Table:
             f"{difference:.3f}" if answered else "–",
             f"{100 * found.share[row]:.2f} %" if answered else "–",
             f"{answer.stretch:.2f}" if answer is not None else "–",
-            found.status(row).ending(found.ended_at(row)) + _snapped(found.snap(row)),
+            _ended(found.status(row), found.ended_at(row)) + _snapped(found.snap(row)),
         )
     return table
+
+
+def _ended(status: Status, load: float) -> str:
+    return str(Ended(status, None if np.isnan(load) else load))
 
 
 def _snapped(load: float) -> str:
@@ -80,19 +86,19 @@ def _snapped(load: float) -> str:
 def _limits(found: Prediction) -> Table:
     """Where each supply alone, and all alike, end."""
     table = Table(title="limits", title_justify="left")
-    for name in ("pressure in", "ends", "on the coarse mesh", "chambers grow", "largest stretch"):
+    for name in ("pressure in", "ends", "on the coarse mesh", "meshes", "chambers grow", "stretch"):
         table.add_column(name)
-    for number, ray in enumerate(found.rays):
-        result, last = found.result(number), found.result(number).last
-        if not ray.is_principal or last is None:
+    for ends in found.compared:
+        ray, result, last, coarse = ends.ray, ends.standard, ends.standard.last, ends.coarse
+        if last is None:
             continue
-        coarse = found.results.get(("coarse", number))
-        growth = found.growth(number)
+        growth = found.growth(found.rays.index(ray))
         x, y, z = last.stretch_at
         table.add_row(
             ray.text,
-            "–" if np.isnan(result.critical) else result.status.ending(result.critical),
+            "–" if np.isnan(result.critical) else _ended(result.status, result.critical),
             "–" if coarse is None or np.isnan(coarse.critical) else f"{coarse.critical:.4g} kPa",
+            ends.agreement.value + (f", {ends.ratio:.3g} times" if 1 < ends.ratio < np.inf else ""),
             f"{growth:.3g} times at {last.load:.3g} kPa" if np.isfinite(growth) else "–",
             f"{last.stretch:.2f} at ({x:.1f}, {y:.1f}, {z:.1f}) mm",
         )

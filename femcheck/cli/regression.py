@@ -13,6 +13,7 @@ from rich.table import Table
 from beamopt.cli.progress import console, progress_bar
 from beamopt.files import csv_text, write_atomic
 from beamopt.provenance import thread_settings
+from femcheck.continuation.ended import Ended
 from femcheck.regression.moved import Moved, said
 from femcheck.regression.run import ContradictionError, Regression, hold_designs, regress
 
@@ -69,9 +70,11 @@ def regress_command(
 
 
 def _say_late(late: Sequence[Moved]) -> None:
-    """What ended by its time limit, a line each: it is no move, and nothing is known of it."""
-    said = f"{len(late)} not compared, time limit reached (another load on this machine?):"
-    console.print(said, soft_wrap=True, markup=False)
+    """What was interrupted, a line each: it is no move, and nothing is known of it."""
+    statuses = {one.now.status: None for one in late if isinstance(one.now, Ended)}
+    why = ", ".join(status.value for status in statuses)
+    shown = f"{len(late)} not compared, {why} (another load on this machine?):"
+    console.print(shown, soft_wrap=True, markup=False)
     for one in late[:MOST_ROWS]:
         held = one.held
         place = f"  {held.rung} of {one.design}: {held.quantity} at {one.row}"

@@ -12,8 +12,10 @@ from rich.table import Table
 from beamopt.arrays import FloatArray
 from beamopt.cli.progress import console
 from femcheck.check.checked import Checked
+from femcheck.check.comparison import Comparison
 from femcheck.check.subject import Subject
 from femcheck.check.tables import verdict
+from femcheck.continuation.ended import Ended
 from femcheck.mesh.quality import Quality
 
 __all__ = ["notes_of", "report"]
@@ -49,7 +51,6 @@ def _lines(checked: Checked) -> list[tuple[str, str]]:
 
 def notes_of(subject: Subject, quality: Quality | None) -> Iterator[str]:
     """What a person should know about a section before believing anything about it."""
-    yield from map(str, subject.outline.faults)
     if quality is not None:
         yield from quality.notes
     if subject.has_islands:
@@ -112,8 +113,11 @@ def _table(checked: Checked) -> Table:
             f"{compared.displacement[row]:.2f}",
             f"{difference:.4f}" if answered else "–",
             f"{100 * share:.3f} %" if answered else "–",
-            compared.final.statuses[row].ending(
-                compared.final.reached[row] * float(np.abs(pressures).max())
-            ),
+            _ended(compared, row),
         )
     return table
+
+
+def _ended(compared: Comparison, row: int) -> str:
+    load = compared.final.reached[row] * float(np.abs(compared.subject.pressures[row]).max())
+    return str(Ended(compared.final.statuses[row], load))

@@ -12,6 +12,7 @@ import numpy as np
 
 from beamopt.errors import InputError
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.limits import Limits
 from femcheck.material.catalogue import MATERIALS
 from femcheck.material.fibre import Thread
 from femcheck.mesh.geo import SectionSizes
@@ -44,9 +45,10 @@ class RunRequest:
     size: float = 1.0
     element: str = "wedge18"
     solver: str = "auto"
-    seconds: float = 600.0
+    iterations: int = Limits().iterations
+    seconds: float = np.inf
     gmsh: str | None = None
-    gmsh_seconds: float = 60.0
+    gmsh_seconds: float = Mesher().seconds
     resume: bool = False
     accuracy: str | None = None
     rung: str = "auto"
@@ -60,10 +62,8 @@ def options_of(request: RunRequest) -> CheckOptions | PredictionOptions:
     ------
     InputError : an option that can not be used.
     """
-    for name in ("seconds", "gmsh_seconds"):
-        value = getattr(request, name)
-        if not 0 < value < np.inf:
-            raise InputError(f"--{name.replace('_', '-')}", "", value, "above 0 s")
+    if not 0 < request.gmsh_seconds < np.inf:
+        raise InputError("--gmsh-seconds", "", request.gmsh_seconds, "above 0 s")
     if request.gmsh is not None and shutil.which(request.gmsh) is None:
         raise InputError("--gmsh", "", request.gmsh, "no such executable")
     laws = (RIGID, *MATERIALS, WOUND)
@@ -75,6 +75,7 @@ def options_of(request: RunRequest) -> CheckOptions | PredictionOptions:
             "element": request.element,
             "layers": request.layers,
             "sizes": SectionSizes(factor=request.size),
+            "iterations": request.iterations,
             "seconds": request.seconds,
             "solver": _solver(request.solver),
             "mesher": Mesher(request.gmsh, request.gmsh_seconds),

@@ -10,10 +10,13 @@ import numpy as np
 import typer
 from rich.markup import escape
 
+from beamopt.actuator import Actuator
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.folder import design_file
+from beamopt.model import allowed
 from beamopt.provenance import thread_settings
 from femcheck.check.folder import CheckFolder
 from femcheck.check.options import CheckOptions
@@ -54,6 +57,7 @@ def run_command(request: RunRequest) -> None:
     subjects = _subjects(request)
     folders = folders_of(request, [subject.name for subject in subjects])
     for subject, folder in zip(subjects, folders, strict=True):  # before any work
+        say_findings(subject.design, subject.name if len(subjects) > 1 else "")
         if isinstance(options, PredictionOptions):
             _check_material(options, subject)
         CheckFolder.open(folder, subject, options.question, resume=request.resume)
@@ -143,7 +147,7 @@ def subject_of(
             design = slender_copy(Subject(name, design), slenderness).design
         except ValueError:
             diameter = 2 * design.grid.outer_radius
-            said = f"H/D with H = 5…5000 mm, D = {diameter:g} mm"
+            said = f"H/D with H = {allowed(Actuator.model_fields['length'])}, D = {diameter:g} mm"
             raise InputError("--slenderness", "", slenderness, said) from None
     return _sealed(file, name, design, skin)
 

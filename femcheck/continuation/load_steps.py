@@ -9,6 +9,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver
+from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
@@ -24,14 +25,12 @@ class LoadSteps:
 
     smallest : share of the load below which a step is too small.
     shrink, grow : factors of a step after a failure and after a success.
-    seconds : time limit of a walk [s].
     """
 
     newton: Newton = field(default_factory=Newton)
     smallest: float = 1 / 256
     shrink: float = 0.5
     grow: float = 2.0
-    seconds: float = 600.0
 
     def walk(
         self,
@@ -41,6 +40,7 @@ class LoadSteps:
         pressures: FloatArray,
         solver: DirectSolver,
         guess: State | None = None,
+        budget: Budget | None = None,
     ) -> Outcome:
         """The equilibrium at `pressures` (3,) [kPa].
 
@@ -48,15 +48,16 @@ class LoadSteps:
         ----------
         start : a known equilibrium and its pressures.
         guess : a state to try at once, before any steps.
+        budget : what every iteration is taken from; None: the usual limits.
         """
-        began = time.perf_counter()
-        deadline = began + self.seconds
+        began = time.process_time()
+        budget = budget or Limits().begin()
         spent = Statistics()
-        tried = self.newton.solve(problem, guess or start[0], pressures, solver, deadline)
+        tried = self.newton.solve(problem, guess or start[0], pressures, solver, budget)
         spent.add(tried.statistics)
         if tried.status is not Status.CONVERGED:
-            tried = self._in_steps(problem, shapes, start, pressures, solver, deadline, spent)
-        spent.seconds = time.perf_counter() - began
+            tried = self._in_steps(problem, shapes, start, pressures, solver, budget, spent)
+        spent.seconds = time.process_time() - began
         return Outcome(
             tried.status,
             tried.state,
@@ -73,7 +74,7 @@ class LoadSteps:
         start: tuple[State, FloatArray],
         pressures: FloatArray,
         solver: DirectSolver,
-        deadline: float,
+        budget: Budget,
         spent: Statistics,
     ) -> Outcome:
         state, first = start
@@ -84,7 +85,7 @@ class LoadSteps:
             to = min(at + step, 1.0)
             between = first + to * (pressures - first)
             guess = shapes.state(here + (to - at) * slope)
-            tried = self.newton.solve(problem, guess, between, solver, deadline)
+            tried = self.newton.solve(problem, guess, between, solver, budget)
             spent.add(tried.statistics)
             if tried.state is not None:
                 now = shapes.of(tried.state)
@@ -95,5 +96,5 @@ class LoadSteps:
                 step *= self.grow
                 continue
             step *= self.shrink
-            if tried.status is Status.TIME_OUT or step < self.smallest:
+            if tried.status.is_limit or step < self.smallest:
                 return Outcome(tried.status, None, at)

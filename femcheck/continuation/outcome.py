@@ -16,22 +16,41 @@ class Status(Enum):
     CONVERGED = "converged"
     LIMIT_POINT = "limit point"
     BUCKLED = "buckled"
+    BEYOND_LAW = "stretched beyond what the law describes"
     INVERTED = "an element turned inside out"
     STEP_TOO_SMALL = "load steps became too small"
     LINEAR_SOLVER = "the linear solver found no solution"
+    WORK_LIMIT = "work limit reached"
     TIME_OUT = "time limit reached"
     STOPPED = "its process ended before it was solved"
 
-    def ending(self, pressure: float) -> str:
-        """How a case ended, and at which pressure [kPa] unless it has an answer."""
-        if self is Status.CONVERGED:
-            return str(self.value)
-        return f"{self.value} at P = {pressure:.4g} kPa"
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether a clock or the death of its process ended it: tried again it may end otherwise.
+
+        All other endings are the same whatever else the machine does.
+        """
+        return self in (Status.TIME_OUT, Status.STOPPED)
+
+    @property
+    def is_physical(self) -> bool:
+        """Whether the actuator has no stable equilibrium there; other endings say nothing of it."""
+        return self in (Status.LIMIT_POINT, Status.BUCKLED)
+
+    @property
+    def is_limit(self) -> bool:
+        """Whether a limit on work or on time ended it, and nothing that it computed."""
+        return self in (Status.WORK_LIMIT, Status.TIME_OUT)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
+        return self.is_physical or self is Status.BEYOND_LAW
 
 
 @dataclass
 class Statistics:
-    """What an equilibrium cost; sums over all its load steps."""
+    """What an equilibrium cost; sums over all its load steps. Seconds are of processor time."""
 
     steps: int = 0
     iterations: int = 0

@@ -13,15 +13,24 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from femcheck.continuation.control import ArcControl, Mix
+from femcheck.continuation.control import ArcControl, Control, Mix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
+from femcheck.continuation.limits import Budget
 from femcheck.continuation.newton import Newton, unstable_directions
-from femcheck.continuation.outcome import Statistics, Status
+from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.path import PathPoint, is_past
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State
 
-__all__ = ["Failed", "Leg", "Predictor", "Slope", "Stepper"]
+__all__ = ["Exhausted", "Failed", "Leg", "Predictor", "Slope", "Stepper"]
+
+
+class Exhausted(Exception):  # noqa: N818
+    """A limit was reached within a step. status : which one."""
+
+    def __init__(self, status: Status) -> None:
+        super().__init__(status.value)
+        self.status = status
 
 
 class Predictor(Protocol):
@@ -77,11 +86,11 @@ class Stepper:
         direction: FloatArray,
         stops: Sequence[float],
         solver: DirectSolver,
-        deadline: float,
+        budget: Budget,
     ) -> None:
         self._newton, self._problem, self._predictor = newton, problem, predictor
         self._direction, self._stops, self._solver = direction, list(stops), solver
-        self._deadline = deadline
+        self._budget = budget
         self.spent = Statistics()
         self.iterations = 0
         worked_on = float(np.abs(direction) @ problem.volumes(problem.rest()))
@@ -108,6 +117,10 @@ class Stepper:
         """The next point, or how it failed; its slope; the length that was tried.
 
         A step that would go past a stop ends on it.
+
+        Raises
+        ------
+        Exhausted : the budget is spent.
         """
         here, slope, before = leg
         to_stop, stop = self._to_stop(here, slope)
@@ -124,8 +137,7 @@ class Stepper:
         shape = self._predictor.of(here.state) + length * (slope.shape + length / 2 * bend)
         guess, load = self._predictor.state(shape), float(at[1] * self.scale[1])
         control = ArcControl(self._direction, load, mix, target)
-        outcome = self._newton.follow(self._problem, guess, control, self._solver, self._deadline)
-        self.spent.add(outcome.statistics)
+        outcome = self._followed(guess, control)
         self.iterations = outcome.statistics.iterations
         if outcome.state is None:
             return Failed(outcome.status, outcome.negative_at_start, guess, load), None, length
@@ -140,14 +152,29 @@ class Stepper:
         return point, there, length
 
     def at(self, load: float, near: PathPoint) -> PathPoint | None:
-        """The equilibrium at a load near a point; None where it is not found."""
+        """The equilibrium at a load near a point; None where it is not found.
+
+        Raises
+        ------
+        Exhausted : the budget is spent.
+        """
         control = ArcControl(self._direction, near.load, Mix(0.0, 1.0), load)
-        newton, deadline = self._newton, self._deadline
-        outcome = newton.follow(self._problem, near.state, control, self._solver, deadline)
-        self.spent.add(outcome.statistics)
+        outcome = self._followed(near.state, control)
         if outcome.state is None:
             return None
         return self._measured(outcome.state, load, outcome.negative_eigenvalues)[0]
+
+    def _followed(self, guess: State, control: Control) -> Outcome:
+        outcome = self._newton.follow(self._problem, guess, control, self._solver, self._budget)
+        self.spent.add(outcome.statistics)
+        if outcome.status.is_limit:
+            raise Exhausted(outcome.status)
+        return outcome
+
+    def share_of_law(self, point: PathPoint) -> float:
+        """Largest stretch at a point over the largest of the law; 0 where that has no end."""
+        most = self._problem.law.most_stretch
+        return self._problem.largest_stretch(point.state)[0] / most if np.isfinite(most) else 0.0
 
     def _to_stop(self, here: PathPoint, slope: Slope) -> tuple[float, float]:
         """Length to the next load asked for, and that load; infinite where there is none."""

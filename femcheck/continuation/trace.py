@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 
 from beamopt.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
+from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.mode import unstable_mode
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.path import Path, PathPoint, is_limit, is_past, summit
-from femcheck.continuation.stepper import Failed, Leg, Predictor, Stepper
+from femcheck.continuation.stepper import Exhausted, Failed, Leg, Predictor, Slope, Stepper
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State
 
@@ -33,7 +34,7 @@ class PathSteps:
     narrow : share of the load to which a bifurcation is closed in.
     patience, tries : volume, over that at rest, and steps that a path is given past a limit point
         to become stable again at a higher load: a snap.
-    seconds : time limit of a trace [s].
+    most_points : that a path may have, all of which are held in memory.
     """
 
     newton: Newton = field(default_factory=lambda: Newton(most_iterations=8))
@@ -44,8 +45,7 @@ class PathSteps:
     narrow: float = 0.01
     patience: float = 0.5
     tries: int = 6
-    most_points: int = 200
-    seconds: float = 900.0
+    most_points: int = 1000
 
     def trace(
         self,
@@ -55,6 +55,7 @@ class PathSteps:
         stops: Sequence[float],
         solver: DirectSolver,
         beyond: float | None = None,
+        budget: Budget | None = None,
     ) -> Path:
         """Follow the equilibria at P · direction from rest to the last of the `stops`.
 
@@ -64,13 +65,14 @@ class PathSteps:
         stops : ascending loads P [kPa] at which an equilibrium is wanted.
         beyond : volume over that at rest up to which the path is followed past a limit point; what
             chambers lose under suction counts as grown. By default `patience` more than at it.
+        budget : what every iteration is taken from; None: the usual limits.
         """
-        deadline = time.perf_counter() + self.seconds
-        stepper = Stepper(self.newton, problem, predictor, direction, stops, solver, deadline)
+        budget = budget or Limits().begin()
+        stepper = Stepper(self.newton, problem, predictor, direction, stops, solver, budget)
         trace = _Trace(self, stepper, stops, beyond)
-        began = time.perf_counter()
+        began = time.process_time()
         status, critical = trace.follow()
-        stepper.spent.seconds = time.perf_counter() - began
+        stepper.spent.seconds = time.process_time() - began
         mode = None
         if trace.lost is not None:
             state, load = trace.lost
@@ -107,41 +109,56 @@ class _Trace:
         self.snaps: list[float] = []
         self.lost: tuple[State, float] | None = None
         self.volume = float("nan")
+        self._ended: End | None = None
         self._ended_at = 0.0
 
     def follow(self) -> End:
-        """Step by step to the last stop, or to what ends the stable part."""
+        """Step by step to the last stop, to what ends the stable part, or to a limit.
+
+        Work that is spent behind the end of the stable part leaves that end as it is, as it is
+        the same each time. A clock that runs out there has left open whether there is a snap.
+        """
         try:
             point, slope = self._stepper.start()
         except SingularMatrixError:
             return Status.LINEAR_SOLVER, 0.0
         self._take(point, None)
+        try:
+            return self._followed(point, slope)
+        except Exhausted as limit:
+            if self._ended is None:
+                return limit.status, self.points[-1].load
+            return (limit.status, self._ended[1]) if limit.status.is_interrupted else self._ended
+
+    def _followed(self, point: PathPoint, slope: Slope) -> End:
         leg, length = Leg(point, slope, None), self._steps.first
-        ended: End | None = None
         halved = False
         tries = self._steps.tries
         while len(self.points) < self._steps.most_points and not self._has_all():
             tried, slope_there, length = self._stepper.step(leg, length)
             if isinstance(tried, Failed):
-                if ended is None and self._is_lost(leg, tried, length):
+                if self._ended is None and self._is_lost(leg, tried, length):
                     return Status.BUCKLED, leg.here.load
                 length, halved = length / 2, True
-                tries -= ended is not None
-                too_small = length < self._steps.smallest or tries < 0
-                if tried.status is Status.TIME_OUT or too_small:
-                    return ended or (tried.status, leg.here.load)
+                tries -= self._ended is not None
+                if length < self._steps.smallest or tries < 0:
+                    return self._ended or (tried.status, leg.here.load)
                 continue
-            if ended is None and is_past(tried):
-                ended = self._ending(leg, tried, length)
+            if self._stepper.share_of_law(tried) > 1:
+                passed = self._ended or self._passing(leg, tried, length)
+                if passed is not None:
+                    return passed
+            if self._ended is None and is_past(tried):
+                self._ended = self._ending(leg, tried, length)
                 self._ended_at = leg.here.volume
-            elif ended is not None and self._has_snapped(ended, tried):
-                self.snaps.append(ended[1])
-                self._catch_up(tried)
-                ended, self.lost, tries = None, None, self._steps.tries
+            elif self._ended is not None and self._has_snapped(self._ended, tried):
+                self.snaps.append(self._ended[1])
+                self._ended, self.lost, tries = None, None, self._steps.tries
                 self.volume = float("nan")
-            self._take(tried, ended)
-            if ended is not None and self._is_far(ended, tried):
-                return ended
+                self._catch_up(tried)
+            self._take(tried, self._ended)
+            if self._ended is not None and self._is_far(self._ended, tried):
+                return self._ended
             assert slope_there is not None
             leg = Leg(tried, slope_there, (leg.slope, length))
             longer = self._stepper.iterations <= self._steps.brisk and not halved
@@ -151,7 +168,7 @@ class _Trace:
             return Status.CONVERGED, float("nan")
         if self._has_all():
             return Status.STEP_TOO_SMALL, self.snaps[-1]
-        return ended or (Status.STEP_TOO_SMALL, self.points[-1].load)
+        return self._ended or (Status.WORK_LIMIT, self.points[-1].load)
 
     def _take(self, point: PathPoint, ended: End | None) -> None:
         self.points.append(point)
@@ -195,7 +212,7 @@ class _Trace:
         Close to a bifurcation the tangent is nearly singular and iterations diverge; that they
         began on the other side of it tells it from other failures.
         """
-        if failed.status is Status.TIME_OUT or failed.unstable is None or failed.unstable < 1:
+        if failed.unstable is None or failed.unstable < 1:
             return False
         rise = self._stepper.rise(leg.slope, length)
         is_short = length <= self._steps.first and 0 < rise <= self._steps.narrow * leg.here.load
@@ -206,6 +223,31 @@ class _Trace:
         self.lost = failed.state, failed.load
         self.volume = leg.here.volume
         return True
+
+    def _passing(self, leg: Leg, there: PathPoint, length: float) -> End | None:
+        """At which load a step leaves what the law describes; None where stability ends before."""
+        inside, outside, low, high = leg.here, there, 0.0, length
+        steps, share = self._steps, self._stepper.share_of_law
+        if share(inside) > 1:  # behind a snap, say
+            return Status.BEYOND_LAW, inside.load
+        while high - low >= steps.smallest and (
+            abs(outside.load - inside.load) > steps.narrow * outside.load
+        ):
+            middle = (low + high) / 2
+            tried, _, _ = self._stepper.step(leg, middle)
+            if isinstance(tried, Failed):
+                break
+            if share(tried) > 1:
+                outside, high = tried, middle
+            elif is_past(tried):
+                return None
+            else:
+                inside, low = tried, middle
+        if inside is not leg.here:
+            self._take(inside, None)
+        part = (1 - share(inside)) / (share(outside) - share(inside))
+        self.volume = float(inside.volume + part * (outside.volume - inside.volume))
+        return Status.BEYOND_LAW, float(inside.load + part * (outside.load - inside.load))
 
     def _ending(self, leg: Leg, there: PathPoint, length: float) -> End:
         """What ended the stable part between two points, and at which load."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from femcheck.material.invariant_kernels import fill_stiffness, fill_stress
+from femcheck.material.stretch_range import StretchRange, stretch_range
 from femcheck.material.tensors import invariants
 
 __all__ = ["Isotropic", "Moduli", "require"]
@@ -40,7 +42,7 @@ class Isotropic(ABC):
 
     E and ν are those of small strains: μ = E/(2 (1 + ν)) = 2 (C1 + C2), and Λ is what
     λ = 2 μ ν/(1 − 2 ν) leaves, Λ = λ − 4 C2 − 4 f″(3). In the mixed form the last term is left to
-    a pressure field.
+    a pressure field, but for what Λ has more than λ.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ class Isotropic(ABC):
         if self.mixed is False and nu == 0.5:
             said = "an incompressible law (poisson_ratio = 0.5) takes the mixed form: True or none"
             raise InputError("", "mixed", self.mixed, said)
-        if self.mixed and self.volumetric_modulus == 0:
+        if self.mixed and self.volumetric_modulus == self._spare_modulus:
             said = f"with poisson_ratio = {nu:g} there is no volumetric term to mix: False or none"
             raise InputError("", "mixed", self.mixed, said)
 
@@ -123,17 +125,31 @@ class Isotropic(ABC):
 
     @property
     def volumetric_compliance(self) -> float | None:
-        """1/Λ [1/kPa] in the mixed form, 0 if incompressible; None in displacements alone."""
-        return 1 / self.volumetric_modulus if self.is_mixed else None
+        """Of the part of Λ that a pressure field stands for [1/kPa]; None in displacements alone.
+
+        0 if incompressible.
+        """
+        return 1 / (self.volumetric_modulus - self._own_modulus) if self.is_mixed else None
+
+    @cached_property
+    def stretch_range(self) -> StretchRange:
+        """Up to which stretch its responses rise, the volume kept."""
+        return stretch_range(self._slopes, self.moduli.C2)
+
+    @property
+    def most_stretch(self) -> float:
+        """The largest principal stretch that it describes; ∞ where it describes all."""
+        return self.stretch_range.least
 
     @property
     def text(self) -> str:
-        """The energy with its constants and how it treats volume, as reports print it."""
-        modulus = self.volumetric_modulus
+        """Energy with constants, treatment of volume, and range, as reports print them."""
+        modulus, rises = self.volumetric_modulus, self.stretch_range.text
+        end = f"; rises up to a stretch of {rises}" if rises else ""
         if math.isinf(modulus):
-            return f"{self._symbols}; incompressible, mixed displacement–pressure"
+            return f"{self._symbols}; incompressible, mixed displacement–pressure{end}"
         how = "mixed displacement–pressure" if self.is_mixed else "displacements only"
-        return f"{self._symbols}; Λ/2 (ln J)², Λ = {modulus:.4g} kPa, {how}"
+        return f"{self._symbols}; Λ/2 (ln J)², Λ = {modulus:.4g} kPa, {how}{end}"
 
     def energy(self, C: FloatArray) -> FloatArray:
         """W (n,) [kPa] at C (n, 6); +∞ where the law has none."""
@@ -164,5 +180,13 @@ class Isotropic(ABC):
 
     @property
     def _own_modulus(self) -> float:
-        """Λ if the law has the volumetric term itself."""
-        return 0.0 if self.is_mixed else self.volumetric_modulus
+        """The part of Λ that the law has itself [kPa]: all of it, or in the mixed form little.
+
+        With negative constants W without its volumetric term falls where the volume changes; as a
+        pressure field keeps the volume in the mean only, what Λ has more than λ stays in the law.
+        """
+        return self._spare_modulus if self.is_mixed else self.volumetric_modulus
+
+    @property
+    def _spare_modulus(self) -> float:
+        return max(0.0, -4 * (self.moduli.C2 + self.moduli.bend))

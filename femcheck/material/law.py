@@ -34,6 +34,11 @@ class Law(Protocol):
         """
         ...
 
+    @property
+    def most_stretch(self) -> float:
+        """The largest principal stretch that it describes; ∞ where it describes all."""
+        ...
+
     def energy(self, C: FloatArray) -> FloatArray:
         """W (n,) [kPa = mN mm/mm³] at C (n, 6)."""
         ...

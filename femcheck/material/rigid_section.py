@@ -56,6 +56,11 @@ class RigidSection:
         )
 
     @property
+    def most_stretch(self) -> float:
+        """∞: it is no material."""
+        return np.inf
+
+    @property
     def volumetric_compliance(self) -> None:
         """None: the energy is whole."""
         return

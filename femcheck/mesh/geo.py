@@ -9,6 +9,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.outline.outline import Loop, Outline
+from beamopt.outline.ring import USUAL_RADIUS
 from femcheck.mesh.wall_thickness import thickness_behind
 
 __all__ = ["SectionSizes", "geo_script"]
@@ -19,7 +20,7 @@ class SectionSizes:
     """How fine a section is meshed.
 
     factor : multiplies all sizes; below 1 is finer.
-    largest : triangles away from walls [mm].
+    largest : triangles away from walls, in a section of 25 mm outer radius [mm].
     per_wall : edge length over the thickness of the wall behind it.
     growth : of the size with the distance from an edge.
     """
@@ -37,10 +38,11 @@ def geo_script(outline: Outline, sizes: SectionSizes) -> str:
     b = np.concatenate([np.roll(loop.points, -1, axis=0) for loop in loops])
     lengths = np.hypot(*(b - a).T)
     walls = thickness_behind(a, b)
-    longest = sizes.factor * np.minimum(sizes.per_wall * walls, sizes.largest)
+    largest = sizes.largest * outline.outer_radius / USUAL_RADIUS
+    longest = sizes.factor * np.minimum(sizes.per_wall * walls, largest)
     parts = np.maximum(np.ceil(lengths / longest - 0.01), 1).astype(np.int64)
     lines = [
-        *_settings(sizes),
+        *_settings(sizes.factor * largest),
         *(f"Point({k}) = {{{x!r}, {y!r}, 0}};" for k, (x, y) in enumerate(a.tolist(), 1)),
         *_curves(loops, parts),
         *_surfaces(outline),
@@ -49,12 +51,12 @@ def geo_script(outline: Outline, sizes: SectionSizes) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _settings(sizes: SectionSizes) -> Iterator[str]:
+def _settings(largest: float) -> Iterator[str]:
     yield "General.NumThreads = 1;"
     yield "Mesh.Algorithm = 5;"  # Delaunay: the one that size fields suit best
     yield "Mesh.MeshSizeExtendFromBoundary = 0;"
     yield "Mesh.MeshSizeFromPoints = 0;"
-    yield f"Mesh.MeshSizeMax = {sizes.factor * sizes.largest!r};"
+    yield f"Mesh.MeshSizeMax = {largest!r};"
     yield "Mesh.SaveAll = 0;"
 
 

@@ -35,6 +35,16 @@ class MeshProblem(Enum):
     FATAL = "no solid can be made of the outline"
     INVERTED = "a mesh element is inside out or flat"
 
+    @property
+    def is_interrupted(self) -> bool:
+        """False: gmsh hangs on an outline, and does so again."""
+        return False
+
+    @property
+    def is_settled(self) -> bool:
+        """False: no mesh says nothing of the actuator."""
+        return False
+
 
 @dataclass(frozen=True, slots=True)
 class MeshFailure:
@@ -52,11 +62,11 @@ class Mesher:
     """How gmsh is called.
 
     command : the executable; None takes the first on the path, then the one beside python.
-    seconds : time limit [s].
+    seconds : of a clock, after which gmsh is taken to hang; a mesh takes one or two [s].
     """
 
     command: str | None = None
-    seconds: float = 60.0
+    seconds: float = 600.0
 
     def mesh(self, outline: Outline, sizes: SectionSizes) -> SectionMesh | MeshFailure:
         """Triangulate a section, or say why that failed."""

@@ -8,9 +8,9 @@ from beamopt.chart.methods import all_methods
 from beamopt.design import Design
 from beamopt.rod.ladder import RodModel, Rung, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.rod.status import RodStatus
+from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND, Reply, nothing
+from femcheck.models.reply import Reply, nothing
 
 __all__ = ["TIGHTEST", "ArcOnGrid", "RodByMethod", "RodOnOutline", "on_grid"]
 
@@ -45,7 +45,7 @@ class ArcOnGrid:
         """Of the same section on this grid."""
         design = on_grid(question.design, self.radial, self.angular)
         if not design.section.moments.is_stiff:
-            return nothing(question, "the raster has too little material to bend")
+            return nothing(question, Ended(NoReply.NOT_STIFF))
         return _rod(question, design, SectionValues(design.section.moments))
 
 
@@ -100,8 +100,7 @@ def _rod(question: Question, design: Design, values: SectionValues | None) -> Re
 
 
 def _answered(tips: Tips) -> Reply:
-    reasons = [FOUND if one is RodStatus.CONVERGED else one.value for one in tips.status]
-    return Reply(tips.positions, tuple(reasons))
+    return Reply(tips.positions, tuple(Ended(one) for one in tips.status))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from beamopt.arrays import FloatArray
 from femcheck.check.case import Case, CaseResult, Solid, solve_case, stopped
+from femcheck.continuation.limits import Limits
 
 __all__ = ["PointKey", "PointWork"]
 
@@ -20,12 +21,12 @@ class PointWork:
     """What is to be solved; see `femcheck.check.work`.
 
     solids : of one mesh; each begins at the shapes of the one before.
-    pressures : (n, 3) [kPa]. seconds : time limit of a case [s].
+    pressures : (n, 3) [kPa]. limits : of a case.
     """
 
     solids: Sequence[Solid]
     pressures: FloatArray
-    seconds: float
+    limits: Limits
     results: dict[PointKey, CaseResult] = field(default_factory=dict)
 
     @property
@@ -47,7 +48,7 @@ class PointWork:
         """Have a case solved."""
         number, row = key
         guess = None if number == 0 else self.results[number - 1, row].shape
-        case = Case(self.solids[number], self.pressures[row], guess, None, self.seconds)
+        case = Case(self.solids[number], self.pressures[row], guess, None, self.limits)
         return executor.submit(solve_case, case)
 
     def stopped(self, key: PointKey) -> CaseResult:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
+from femcheck.continuation.ended import FOUND, Ended
 from femcheck.models.question import Question
 
-__all__ = ["FOUND", "Model", "Reply", "cpu_seconds", "nothing"]
-
-FOUND = "converged"
+__all__ = ["Model", "Reply", "cpu_seconds", "nothing"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +23,14 @@ class Reply:
     """Tips of a question.
 
     tips : (n, 3) [mm], the base's material centroid at the origin; NaN without an equilibrium.
-    reasons : n texts: `FOUND`, or why there is no tip.
+    endings : n, one a tip: `FOUND`, or why there is none.
     unknowns : of the discretisation; 0 for a closed form.
     size : what was meshed, for people; "" where nothing was.
     errors : (n,) the model's own estimate of its tips' error [mm]; None where it has none.
     """
 
     tips: FloatArray
-    reasons: tuple[str, ...]
+    endings: tuple[Ended, ...]
     unknowns: int = 0
     size: str = ""
     errors: FloatArray | None = None
@@ -40,7 +38,7 @@ class Reply:
     @property
     def found(self) -> NDArray[np.bool_]:
         """(n,) where there is a tip."""
-        return np.array([reason == FOUND for reason in self.reasons], dtype=np.bool_)
+        return np.array([one.is_found for one in self.endings], dtype=np.bool_)
 
     @property
     def is_whole(self) -> bool:
@@ -48,10 +46,17 @@ class Reply:
         return bool(self.found.all())
 
     @property
-    def reason(self) -> str:
-        """The commonest reason why there is no tip; `FOUND` where all are there."""
-        wrong = Counter(reason for reason in self.reasons if reason != FOUND)
-        return wrong.most_common(1)[0][0] if wrong else FOUND
+    def ended(self) -> Ended:
+        """Of the commonest status without a tip the ending at the lowest load.
+
+        `FOUND` where all tips are there.
+        """
+        wrong = [one for one in self.endings if not one.is_found]
+        if not wrong:
+            return FOUND
+        usual = Counter(one.status for one in wrong).most_common(1)[0][0]
+        alike = (one for one in wrong if one.status is usual)
+        return min(alike, key=lambda one: np.inf if one.load is None else one.load)
 
     def away(self, tips: FloatArray) -> FloatArray:
         """(n,) distances from other tips (n, 3) [mm]; NaN where either has none."""
@@ -80,11 +85,10 @@ class Model(Protocol):
         ...
 
 
-def nothing(question: Question, reasons: str | Sequence[str]) -> Reply:
+def nothing(question: Question, why: Ended) -> Reply:
     """No tip at all, and why."""
     n = len(question.pressures)
-    said = (reasons,) * n if isinstance(reasons, str) else tuple(reasons)
-    return Reply(np.full((n, 3), np.nan), said)
+    return Reply(np.full((n, 3), np.nan), (why,) * n)
 
 
 def cpu_seconds() -> float:

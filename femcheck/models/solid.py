@@ -19,6 +19,8 @@ from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.work import solve_all
+from femcheck.continuation.ended import FOUND, Ended
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.law import Law
@@ -28,7 +30,7 @@ from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.models.points import PointWork
 from femcheck.models.question import LawChoice, Question
-from femcheck.models.reply import FOUND, Reply, nothing
+from femcheck.models.reply import Reply, nothing
 from femcheck.prediction.options import PredictionOptions
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import Ray, rays_of
@@ -98,22 +100,22 @@ class SolidModel:
         options, subject = self.options(question.law), question.subject
         section = options.mesher.mesh(subject.outline, options.sizes)
         if isinstance(section, MeshFailure):
-            return nothing(question, str(section))
+            return nothing(question, Ended.of_mesh(section))
         pool = partial(processes if workers else in_process, max(workers, 1))
         ask = _Solving(question, options, self, section, pool, max(workers, 1), kind)
-        tips, reasons = ask.rigid() if question.is_of_the_beam else ask.material()
+        tips, endings = ask.rigid() if question.is_of_the_beam else ask.material()
         solid = ask.solid("size", RigidSection(1.0, 1.0))
         body = solid.body()
         mixed = body.corner_nodes.size if self._is_mixed(question) else 0
         size = f"{len(section.triangles)} triangles × {self.layers} layers of {self.element}"
-        return Reply(tips, reasons, body.unknowns + mixed, size)
+        return Reply(tips, endings, body.unknowns + mixed, size)
 
 
 class _TipRays(RayWork):
     """Rays that combinations lie on, and no others, of one mesh."""
 
-    def __init__(self, solid: Solid, rays: Sequence[Ray], used: set[int], seconds: float) -> None:
-        super().__init__({"standard": solid}, rays, seconds)
+    def __init__(self, solid: Solid, rays: Sequence[Ray], used: set[int], limits: Limits) -> None:
+        super().__init__({"standard": solid}, rays, limits)
         self.used = used
 
     @property
@@ -150,7 +152,7 @@ class _Solving:
     def centroid(self) -> FloatArray:
         return np.append(self.section.moments.centroid, 0.0)
 
-    def rigid(self) -> tuple[FloatArray, tuple[str, ...]]:
+    def rigid(self) -> tuple[FloatArray, tuple[Ended, ...]]:
         """Both penalties, extrapolated."""
         E = self.design.actuator.youngs_modulus
         low, high = (
@@ -160,14 +162,15 @@ class _Solving:
             )
         )
         results = self._on_grid(low, high) if self.question.is_on_grid else self._at(low, high)
-        tips, reasons = [], []
+        tips, endings = [], []
         ratio = 1 / (high.penalty / low.penalty - 1)
         for pressures, coarse, fine in zip(self.question.pressures, *results, strict=True):
             tips.append(self._tip(fine) + ratio * (self._tip(fine) - self._tip(coarse)))
             worse = coarse if coarse.status is not Status.CONVERGED else fine
             load = worse.outcome.reached * float(np.abs(pressures).max())
-            reasons.append(worse.status.ending(load))
-        return np.array(tips), tuple(reasons)
+            found = worse.status is Status.CONVERGED
+            endings.append(FOUND if found else Ended(worse.status, load))
+        return np.array(tips), tuple(endings)
 
     def _tip(self, result: CaseResult) -> FloatArray:
         state = result.outcome.state
@@ -175,7 +178,7 @@ class _Solving:
 
     def _on_grid(self, low: Stage, high: Stage) -> tuple[list[CaseResult], list[CaseResult]]:
         """All 27, each predicted from its neighbours."""
-        schedule = Schedule((low, high), self.design.pressures, self.options.seconds)
+        schedule = Schedule((low, high), self.design.pressures, self.options.limits)
         solve_all(schedule, self.pool, self.workers, _keep_nothing)
         nodes = sorted(all_nodes(), key=lambda node: node_index(*node))
         first, second = (
@@ -186,37 +189,37 @@ class _Solving:
     def _at(self, low: Stage, high: Stage) -> tuple[list[CaseResult], list[CaseResult]]:
         """Each by itself, from rest."""
         pressures = self.question.pressures
-        work = PointWork((low.solid, high.solid), pressures, self.options.seconds)
+        work = PointWork((low.solid, high.solid), pressures, self.options.limits)
         solve_all(work, self.pool, self.workers, _keep_nothing)
         first, second = ([work.results[k, row] for row in range(len(pressures))] for k in (0, 1))
         return first, second
 
-    def material(self) -> tuple[FloatArray, tuple[str, ...]]:
+    def material(self) -> tuple[FloatArray, tuple[Ended, ...]]:
         """Along rays from rest, which tell stable equilibria from others."""
         options = self.options
         assert isinstance(options, PredictionOptions)
         solid = self.solid("standard", options.law_for(self.design.actuator))
         rays, places = rays_of(self.question.pressures)
         used = {place[0] for place in places if place is not None}
-        work = _TipRays(solid, rays, used, options.seconds)
+        work = _TipRays(solid, rays, used, options.limits)
         solve_all(work, self.pool, self.workers, _keep_nothing)
-        tips, reasons = [], []
+        tips, endings = [], []
         for place in places:
             if place is None:
                 tips.append(np.array([0.0, 0.0, self.design.actuator.length]))
-                reasons.append(FOUND)
+                endings.append(FOUND)
                 continue
             number, load = place
-            tip, reason = self._on_ray(work.results["standard", number], rays[number], load)
+            tip, ended = self._on_ray(work.results["standard", number], rays[number], load)
             tips.append(tip)
-            reasons.append(reason)
-        return np.array(tips), tuple(reasons)
+            endings.append(ended)
+        return np.array(tips), tuple(endings)
 
-    def _on_ray(self, result: RayResult, ray: Ray, load: float) -> tuple[FloatArray, str]:
+    def _on_ray(self, result: RayResult, ray: Ray, load: float) -> tuple[FloatArray, Ended]:
         found = result.answers[ray.stops.index(load)]
         if found is not None:
             return found.tip - self.centroid, FOUND
-        return np.full(3, np.nan), result.status.ending(result.critical)
+        return np.full(3, np.nan), Ended(result.status, result.critical)
 
 
 def _keep_nothing(key: object, result: object) -> None:

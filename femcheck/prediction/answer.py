@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from beamopt.arrays import FloatArray
 from femcheck.continuation.path import PathPoint
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.equilibrium import Equilibrium
-from femcheck.solid.state import State
 
 __all__ = ["Answer", "read_off"]
 
@@ -41,7 +38,7 @@ class Answer:
 def read_off(problem: Equilibrium, shapes: Shapes, point: PathPoint) -> Answer:
     """What an equilibrium shows."""
     state = point.state
-    stretch, where = _largest_stretch(problem, state)
+    stretch, where = problem.largest_stretch(state)
     return Answer(
         load=point.load,
         x=state.x,
@@ -52,12 +49,3 @@ def read_off(problem: Equilibrium, shapes: Shapes, point: PathPoint) -> Answer:
         stretch_at=where,
         axis=shapes.axis(state),
     )
-
-
-def _largest_stretch(problem: Equilibrium, state: State) -> tuple[float, FloatArray]:
-    _, C, _ = problem.deformation(state)
-    flat = C.reshape(-1, 6)
-    whole = flat[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
-    largest = np.linalg.eigvalsh(whole)[:, 2]
-    place = int(np.argmax(largest))
-    return float(np.sqrt(largest[place])), problem.body.places.reshape(-1, 3)[place]

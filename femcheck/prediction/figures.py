@@ -49,7 +49,8 @@ def paths_figure(found: Prediction) -> Figure:
     axes.plot([], [], "o", color=DESIGN_COLOUR, ms=4, label="limit point")
     axes.plot([], [], "X", color=DESIGN_COLOUR, ms=5, label="other end")
     if found.first_to_end is not None:
-        axes.axhline(found.stable_box, color=DESIGN_COLOUR, lw=0.7, ls=(0, (1, 3)))
+        look: dict[str, Any] = {"color": DESIGN_COLOUR, "lw": 0.7, "ls": (0, (1, 3))}
+        axes.axhline(found.safe_box.pressure, label="advised at most", **look)
     axes.set(xlabel="volume of the loaded chambers / that at rest", ylabel="pressure [kPa]")
     axes.set_title(f"{found.subject.name}: {found.options.title}")
     axes.set_ylim(bottom=0)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import io
-import struct
-import zipfile
-import zlib
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamopt.files import write_atomic
+from femcheck.check.store import read_arrays, write_arrays
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.ray_trace import RayResult
@@ -47,38 +44,34 @@ def write_ray(path: Path, result: RayResult, digest: str) -> None:
         if answer is not None:
             for one in fields(Answer):
                 arrays[f"{number}_{one.name}"] = np.asarray(getattr(answer, one.name))
-    stream = io.BytesIO()
-    np.savez(stream, allow_pickle=False, **arrays)
-    write_atomic(path, stream.getvalue())
+    write_arrays(path, arrays)
 
 
 def read_ray(path: Path, digest: str) -> RayResult | None:
     """A kept result; None where there is none to the same question that can be read."""
-    try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as kept:
-            if str(kept["digest"]) != digest:
-                return None
-            steps, iterations = kept["counts"].tolist()
-            there = kept["there"].tolist()
-            *answers, last = (_answer(kept, number) for number in range(len(there)))
-            if [one is not None for one in (*answers, last)] != there:
-                return None
-            return RayResult(
-                Status[str(kept["status"])],
-                float(kept["critical"]),
-                tuple(answers),
-                last,
-                kept["track"],
-                float(kept["growth"]),
-                tuple(kept["snaps"].tolist()),
-                kept["mode_at"],
-                float(kept["mode_share"]),
-                Statistics(steps, iterations, *kept["seconds"].tolist()),
-            )
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):
+    return read_arrays(path, partial(_ray, digest))
+
+
+def _ray(digest: str, kept: Any) -> RayResult | None:
+    if str(kept["digest"]) != digest:
         return None
-    except (RuntimeError, SyntaxError, zlib.error, struct.error):
-        return None  # headers with a bit turned over: encrypted, compressed, of no size
+    steps, iterations = kept["counts"].tolist()
+    there = kept["there"].tolist()
+    *answers, last = (_answer(kept, number) for number in range(len(there)))
+    if [one is not None for one in (*answers, last)] != there:
+        return None
+    return RayResult(
+        Status[str(kept["status"])],
+        float(kept["critical"]),
+        tuple(answers),
+        last,
+        kept["track"],
+        float(kept["growth"]),
+        tuple(kept["snaps"].tolist()),
+        kept["mode_at"],
+        float(kept["mode_share"]),
+        Statistics(steps, iterations, *kept["seconds"].tolist()),
+    )
 
 
 def _answer(kept: Any, number: int) -> Answer | None:

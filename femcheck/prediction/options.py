@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from beamopt.actuator import Actuator
 from beamopt.errors import InputError
 from femcheck.check.solid_options import SolidOptions
-from femcheck.material.catalogue import law_by_name
+from femcheck.material.catalogue import law_by_name, modulus_of
 from femcheck.material.fibre import Thread
 from femcheck.material.law import Law
 from femcheck.solid.elements import ELEMENTS
@@ -44,7 +44,8 @@ class PredictionOptions(SolidOptions):
 
     def __post_init__(self) -> None:
         SolidOptions.__post_init__(self)
-        law = law_by_name(self.law, 1.0, self.poisson_ratio, self.constants)
+        E = modulus_of(self.law, self.poisson_ratio, self.constants) or 1.0
+        law = law_by_name(self.law, E, self.poisson_ratio, self.constants)
         if law.volumetric_compliance is not None and not ELEMENTS[self.element].has_pair:
             paired = ", ".join(name for name, choice in ELEMENTS.items() if choice.has_pair)
             said = f"has no stable pair for ν = {self.poisson_ratio:g}; one of {paired}"

@@ -20,14 +20,13 @@ from femcheck.prediction.answer import Answer
 from femcheck.prediction.options import PredictionOptions
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import Ray
+from femcheck.prediction.two_meshes import Agreement, RayEnds, SafeBox, safe_box
 from femcheck.prediction.work import RayKey
 
 __all__ = ["Prediction"]
 
 SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
 STILL = 1e-9  # mm
-PHYSICAL = {Status.LIMIT_POINT, Status.BUCKLED}
-"""Ends that the actuator has; the others are the computation's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +36,8 @@ class Prediction:
     failure : why there is no solid; results are then empty.
     solids : by mesh, "standard" and "coarse".
     rays, places : through the combinations; each combination's ray and load, None without pressure.
-    results : of every ray on the standard mesh, of the principal ones on the coarse one.
+    results : of every ray on the standard mesh; on the coarse one of the principal rays and of
+        those that decide the verdict.
     """
 
     subject: Subject
@@ -143,8 +143,12 @@ class Prediction:
     @property
     def share(self) -> FloatArray:
         """(27,) difference over the beam's displacement, or a hundredth of the largest one."""
+        return np.asarray(self.difference / self._moved)
+
+    @property
+    def _moved(self) -> FloatArray:
         least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
-        return np.asarray(self.difference / np.maximum(self.displacement, least))
+        return np.asarray(np.maximum(self.displacement, least))
 
     @property
     def discretisation(self) -> FloatArray:
@@ -171,12 +175,17 @@ class Prediction:
     @property
     def first_to_end(self) -> int | None:
         """The ray whose stable part ends at the lowest load; None where none ends."""
-        return self._first(PHYSICAL)
+        return self._first({status for status in Status if status.is_physical})
+
+    @property
+    def first_to_leave(self) -> int | None:
+        """The ray that leaves what the law describes at the lowest load; None where none does."""
+        return self._first({Status.BEYOND_LAW})
 
     @property
     def first_to_fail(self) -> int | None:
         """The ray that the computation lost at the lowest load; None where it lost none."""
-        return self._first(set(Status) - PHYSICAL - {Status.CONVERGED})
+        return self._first({status for status in Status if _is_lost(status)})
 
     def _first(self, statuses: set[Status]) -> int | None:
         found = [n for n in range(len(self.rays)) if self.result(n).status in statuses]
@@ -185,8 +194,12 @@ class Prediction:
     @property
     def not_computed(self) -> int:
         """Combinations without an answer because the computation lost their rays."""
-        lost = PHYSICAL | {Status.CONVERGED}
-        return sum(self.status(row) not in lost for row in range(len(self.places)))
+        return sum(_is_lost(self.status(row)) for row in range(len(self.places)))
+
+    @property
+    def beyond_law(self) -> int:
+        """Combinations without an answer because the law describes no stretch so large."""
+        return sum(self.status(row) is Status.BEYOND_LAW for row in range(len(self.places)))
 
     @property
     def is_checked(self) -> bool:
@@ -195,15 +208,71 @@ class Prediction:
 
     @property
     def stable_box(self) -> float:
-        """P [kPa] so that combinations up to P in every supply have a stable answer.
+        """P [kPa] so that combinations up to P in every supply have a stable answer on both meshes.
 
         As far as the rays tell: the combinations, scaled down, lie on the same ones. Where the
-        computation lost a ray it is what is known, and may be more.
+        computation lost a ray, or one left what the law describes, it is what is known, and may be
+        more.
         """
-        ends = [n for n in (self.first_to_end, self.first_to_fail) if n is not None]
-        return min((self.result(n).critical for n in ends), default=self.largest)
+        ends = [one.critical for one in self.results.values() if np.isfinite(one.critical)]
+        return min(ends, default=self.largest)
+
+    @cached_property
+    def safe_box(self) -> SafeBox:
+        """What may be advised: the stable box with a margin, and no chamber grown too far."""
+        return safe_box(self.rays, self.results, self.largest)
+
+    @property
+    def decisive(self) -> list[int]:
+        """Rays that the verdict stands on: the first to end, to leave the law, to be lost.
+
+        Where all have their answers, that of the combination that the beam is farthest off at.
+        """
+        firsts = (self.first_to_end, self.first_to_leave, self.first_to_fail)
+        found = [n for n in firsts if n is not None]
+        shares = np.where(self.is_loaded, self.share, np.nan)
+        if not found and np.isfinite(shares).any():
+            place = self.places[int(np.nanargmax(shares))]
+            found += [] if place is None else [place[0]]
+        return sorted(set(found))
+
+    @property
+    def compared(self) -> list[RayEnds]:
+        """The principal rays and the decisive ones, with what is known of each on both meshes."""
+        chosen = {n for n, ray in enumerate(self.rays) if ray.is_principal} | set(self.decisive)
+        return [self.ends(number) for number in sorted(chosen)]
+
+    def ends(self, number: int) -> RayEnds:
+        """One ray on both meshes."""
+        return RayEnds(self.rays[number], self.result(number), self.results.get(("coarse", number)))
+
+    @property
+    def mesh_share(self) -> float:
+        """Largest change of a tip from the coarse mesh to the standard one, over displacement.
+
+        Of the combinations that both meshes have an answer to; NaN without any.
+        """
+        shares = (self.discretisation / self._moved)[self.is_loaded]
+        known = shares[np.isfinite(shares)]
+        return float(known.max()) if known.size else float("nan")
+
+    @property
+    def certain(self) -> bool:
+        """Whether both meshes say the same: of where rays end, and of how far the beam is off."""
+        if not self.has_answers:
+            return False
+        if not self.is_loaded.any():
+            return True
+        if any(one.agreement is not Agreement.AGREE for one in self.compared):
+            return False
+        return self.unanswered > 0 or abs(self.worst - self.options.agree) > self.mesh_share
 
     @property
     def holds(self) -> bool:
         """Whether every combination has a stable answer and the beam is near enough to all."""
         return self.has_answers and self.unanswered == 0 and self.worst <= self.options.agree
+
+
+def _is_lost(status: Status) -> bool:
+    """Whether the computation lost a ray: no answer, and no end that the actuator or law has."""
+    return status is not Status.CONVERGED and not status.is_settled

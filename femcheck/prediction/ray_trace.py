@@ -8,6 +8,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from femcheck.check.case import Solid, workshop
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.mode import LOCAL
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.continuation.path import Path
@@ -25,14 +26,11 @@ directions (−1: not known)."""
 
 @dataclass(frozen=True, eq=False)
 class RayTask:
-    """A ray to be followed.
-
-    seconds : time limit [s].
-    """
+    """A ray to be followed."""
 
     solid: Solid
     ray: Ray
-    seconds: float
+    limits: Limits = field(default_factory=Limits)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +59,10 @@ class RayResult:
     mode_share: float = float("nan")
     statistics: Statistics = field(default_factory=Statistics)
 
+    def is_final(self, limits: Limits) -> bool:
+        """Whether it would end alike if it was followed again under these limits."""
+        return not limits.repeats(self.status, self.statistics)
+
     @property
     def is_local(self) -> bool:
         """Whether stability is lost by a small part of the section, and not by the actuator."""
@@ -70,9 +72,10 @@ class RayResult:
 def trace_ray(task: RayTask) -> RayResult:
     """Follow a ray; whatever happens, a result with a status."""
     shop = workshop(task.solid)
-    steps = PathSteps(seconds=task.seconds)
-    direction = np.array(task.ray.direction)
-    path = steps.trace(shop.problem, shop.shapes, direction, task.ray.stops, shop.solver)
+    direction, budget = np.array(task.ray.direction), task.limits.begin()
+    path = PathSteps().trace(
+        shop.problem, shop.shapes, direction, task.ray.stops, shop.solver, budget=budget
+    )
     answers = tuple(
         None if point is None else read_off(shop.problem, shop.shapes, point)
         for point in path.stops

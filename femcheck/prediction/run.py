@@ -33,7 +33,6 @@ from femcheck.prediction.work import RayKey, RayWork
 
 __all__ = ["predict_design"]
 
-AGAIN = (Status.STOPPED, Status.TIME_OUT)  # a prediction that goes on tries these once more
 FIGURES = ("paths", "axis")
 
 Progress = Callable[[int, int, str], None]
@@ -78,28 +77,39 @@ def predict_design(
         for mesh, section in zip(("standard", "coarse"), sections, strict=True)
     }
     rays, places = rays_of(subject.pressures)
-    work = RayWork(solids, rays, options.seconds)
-    digests = {key: _digest(solids[key[0]], work, key) for key in work.keys}
-    for key in work.keys:
-        kept = read_ray(_file(folder, work, key), digests[key])
-        if kept is not None and kept.status not in AGAIN:
-            work.results[key] = kept
+    work = RayWork(solids, rays, options.limits)
 
     def keep(key: RayKey, result: RayResult) -> None:
-        write_ray(_file(folder, work, key), result, digests[key])
+        write_ray(_file(folder, work, key), result, _digest(solids[key[0]], work, key))
         if progress is not None:
             said = f"{key[0]}, {rays[key[1]].text}: {result.status.value}"
             progress(len(work.results), len(work.keys), said)
 
-    if progress is not None:
-        progress(len(work.results), len(work.keys), "starting")
-    solve_all(work, lambda: pool(workers), workers, keep)
+    def follow() -> Prediction:
+        _take_kept(folder, work)
+        if progress is not None:
+            progress(len(work.results), len(work.keys), "starting")
+        solve_all(work, lambda: pool(workers), workers, keep)
+        results = dict(work.results)
+        return Prediction(
+            subject, options, law, None, quality, solids, tuple(rays), tuple(places), results
+        )
+
     quality = quality_of(subject.outline, sections[0])
-    found = Prediction(
-        subject, options, law, None, quality, solids, tuple(rays), tuple(places), work.results
-    )
+    found = follow()
+    # no verdict is to stand on one mesh alone
+    work.asked = {n for n in found.decisive if not found.result(n).status.is_interrupted}
+    found = follow()
     _write(folder, found)
     return found
+
+
+def _take_kept(folder: CheckFolder, work: RayWork) -> None:
+    """Put the rays that were followed before among the results."""
+    for key in (key for key in work.keys if key not in work.results):
+        kept = read_ray(_file(folder, work, key), _digest(work.solids[key[0]], work, key))
+        if kept is not None and kept.is_final(work.limits):
+            work.results[key] = kept
 
 
 def _file(folder: CheckFolder, work: RayWork, key: RayKey) -> Path:

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
-from femcheck.check.tables import COMPARE, DIGITS, cells, plain
+from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
 from femcheck.material.catalogue import constants_of
+from femcheck.material.isotropic import Isotropic
+from femcheck.material.law import Law
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import TRACK
+from femcheck.prediction.two_meshes import AGREE, GROWTH, MARGIN, Agreement, RayEnds
 from femcheck.prediction.verdict import advice, verdict
 
 __all__ = ["tables_of"]
 
 MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z"
 LIMITS = (
-    "mesh,d1,d2,d3,status,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
+    "mesh,d1,d2,d3,status,ended,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
-    "mode_at_z,mode_share,points,iterations"
+    "mode_at_z,mode_share,points,steps,iterations,"
+    "on_the_other_mesh_kpa,ratio,meshes"
 )
 AXIS = (
     "d1,d2,d3,load_kpa,z,extension,curvature_x,curvature_y,"
@@ -69,7 +73,7 @@ def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
                 *cells([difference[row], difference[row] / length]),
                 *cells([difference[row] / moved if moved > 0 else math.nan]),
                 *cells(_ratios(found, mesh, answer)),
-                found.status(row, mesh).value,
+                *both(found.status(row, mesh)),
                 *cells([found.ended_at(row, mesh), found.snap(row, mesh)]),
                 *_stretched(answer),
             )
@@ -95,14 +99,28 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
         yield (
             mesh,
             *map(plain, found.rays[number].direction),
-            result.status.value,
+            *both(result.status),
             *cells([result.critical, math.nan if last is None else last.load]),
             *cells(_ratios(found, mesh, last)),
             *_stretched(last),
             *cells([*result.mode_at, result.mode_share]),
             len(result.track),
+            result.statistics.steps,
             result.statistics.iterations,
+            *_other_mesh(found, mesh, number),
         )
+
+
+def _other_mesh(found: Prediction, mesh: str, number: int) -> list[object]:
+    """Up to where the ray is stable on the other mesh, the ratio, and whether the meshes agree."""
+    ends = found.ends(number)
+    standard, coarse = ends.loads
+    other = coarse if mesh == "standard" else standard
+    return [*_finite([other, ends.ratio]), ends.agreement.name]
+
+
+def _finite(values: Sequence[float]) -> list[object]:
+    return cells([value if math.isfinite(value) else math.nan for value in values])
 
 
 def _paths(found: Prediction) -> Iterator[tuple[object, ...]]:
@@ -139,6 +157,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "kind": "prediction",
             "law": options.law,
             "holds": found.holds,
+            "certain": found.certain,
             "text": verdict(found),
             "advice": advice(found),
             "agree": options.agree,
@@ -150,6 +169,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
                 for one in constants_of(found.law)
             ],
             "winding": options.question["wound"],
+            "rises_up_to_stretch": _rises(found.law),
         },
         "actuator": {
             "length_mm": found.subject.design.actuator.length,
@@ -159,7 +179,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
             "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
             "islands": len(outline.islands),
-            "faults": [str(fault) for fault in outline.faults],
+            "faults": [str(fault) for fault in found.subject.design.findings],
         },
     }
     moved = found.subject.sealing_moved
@@ -170,7 +190,14 @@ def _summary(found: Prediction) -> dict[str, Any]:
         }
     if found.has_answers:
         data["stable_box_kpa"] = round(found.stable_box, DIGITS)
-        data["limits"] = [_limit(found, number) for number in _principal(found)]
+        data["safe_box"] = _safe_box(found)
+        data["meshes"] = {
+            "agree_up_to_ratio": AGREE,
+            "rays": len(found.rays),
+            "rays_on_both": sum(key[0] == "coarse" for key in found.results),
+            "largest_ratio": _most(np.array([one.ratio for one in found.compared])),
+        }
+        data["limits"] = [_limit(found, one) for one in found.compared]
         data["growth_at_the_end"] = {
             found.rays[number].text: _number(found.growth(number)) for number in _principal(found)
         }
@@ -180,24 +207,54 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "worst_of_displacement": _number(found.worst),
             "median_of_displacement": _number(found.median),
             "worst_between_meshes_mm": _most(found.discretisation),
+            "worst_between_meshes_of_displacement": _number(found.mesh_share),
         }
         data["solids"] = [_solid(found, mesh) for mesh in found.solids]
     return data
+
+
+def _rises(law: Law) -> dict[str, float | None]:
+    """Up to which stretch the law's responses rise; null where they always do."""
+    if not isinstance(law, Isotropic):
+        return {}
+    ends = law.stretch_range._asdict()
+    return {name: None if math.isinf(end) else round(end, DIGITS) for name, end in ends.items()}
 
 
 def _principal(found: Prediction) -> list[int]:
     return [number for number, ray in enumerate(found.rays) if ray.is_principal]
 
 
-def _limit(found: Prediction, number: int) -> dict[str, Any]:
-    ray, result = found.rays[number], found.result(number)
-    coarse, last = found.results.get(("coarse", number)), result.last
+def _safe_box(found: Prediction) -> dict[str, Any]:
+    """What may be advised, and what limits it."""
+    box = found.safe_box
+    mesh, number = (None, None) if box.key is None else box.key
+    return {
+        "kpa": _number(box.pressure),
+        "margin": MARGIN,
+        "largest_growth": GROWTH,
+        "limited_by": box.why.name,
+        "of": None if number is None else found.rays[number].text,
+        "mesh": mesh,
+        "there_kpa": _number(box.at),
+    }
+
+
+def _limit(found: Prediction, ends: RayEnds) -> dict[str, Any]:
+    """The end of a ray, with both meshes' figures."""
+    ray, result, coarse = ends.ray, ends.standard, ends.coarse
+    last = result.last
     ratios = _ratios(found, "standard", last)
     return {
         "of": ray.text,
         "status": result.status.value,
+        "ended": result.status.name,
         "ends_at_kpa": _number(result.critical),
+        "status_on_the_coarse_mesh": None if coarse is None else coarse.status.value,
         "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),
+        "ratio": _number(ends.ratio),
+        "ratio_is_a_lower_bound": ends.is_bound,
+        "certain": ends.agreement is Agreement.AGREE,
         "volume_ratios": [_number(value) for value in ratios.tolist()],
         "largest_stretch": None if last is None else _number(last.stretch),
         "largest_stretch_at_mm": None
@@ -207,11 +264,11 @@ def _limit(found: Prediction, number: int) -> dict[str, Any]:
 
 
 def _number(value: float) -> float | None:
-    return None if math.isnan(value) else round(value, DIGITS)
+    return round(value, DIGITS) if math.isfinite(value) else None
 
 
 def _most(values: FloatArray) -> float | None:
-    known = values[~np.isnan(values)]
+    known = values[np.isfinite(values)]
     return round(float(known.max()), DIGITS) if known.size else None
 
 
@@ -227,12 +284,13 @@ def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
         "unknowns": solid.body().unknowns,
         "rays": len(results),
         "iterations": sum(result.statistics.iterations for result in results),
+        "most_iterations": max(result.statistics.iterations for result in results),
         "stability": "checked by inertia" if found.is_checked else "not checked",
     }
 
 
 def _timing(found: Prediction) -> Iterator[tuple[str, float, str]]:
-    """What the rays cost, summed over processes."""
+    """Processor time of the rays, summed over processes."""
     for mesh in found.solids:
         spent = [result.statistics for key, result in found.results.items() if key[0] == mesh]
         for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):

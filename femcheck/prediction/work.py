@@ -7,6 +7,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
 from femcheck.check.case import Solid
+from femcheck.continuation.limits import Limits
 from femcheck.prediction.ray_trace import RayResult, RayTask, stopped_ray, trace_ray
 from femcheck.prediction.rays import Ray
 
@@ -20,21 +21,25 @@ RayKey = tuple[str, int]
 class RayWork:
     """What is to be traced; see `femcheck.check.work`.
 
-    solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, for an
-    estimate of the mesh's error. seconds : time limit of a ray [s].
+    solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, and
+    those that are `asked` for, for an estimate of the mesh's error. limits : of a ray.
     """
 
     solids: Mapping[str, Solid]
     rays: Sequence[Ray]
-    seconds: float
+    limits: Limits
     results: dict[RayKey, RayResult] = field(default_factory=dict)
+    asked: set[int] = field(default_factory=set)
 
     @property
     def keys(self) -> list[RayKey]:
-        """The standard mesh's rays, then the principal ones of the coarse mesh."""
+        """The standard mesh's rays, then the principal ones and those asked for of the coarse."""
         standard = [("standard", number) for number in range(len(self.rays))]
-        coarse = [("coarse", n) for n, ray in enumerate(self.rays) if ray.is_principal]
+        coarse = [("coarse", n) for n in range(len(self.rays)) if self._is_on_both(n)]
         return standard + coarse
+
+    def _is_on_both(self, number: int) -> bool:
+        return self.rays[number].is_principal or number in self.asked
 
     def begin(self, executor: Executor, waiting: Sequence[RayKey]) -> bool:
         """Nothing comes before the rays."""
@@ -47,7 +52,7 @@ class RayWork:
     def submit(self, executor: Executor, key: RayKey) -> Future[RayResult]:
         """Have a ray followed."""
         mesh, number = key
-        task = RayTask(self.solids[mesh], self.rays[number], self.seconds)
+        task = RayTask(self.solids[mesh], self.rays[number], self.limits)
         return executor.submit(trace_ray, task)
 
     def stopped(self, key: RayKey) -> RayResult:

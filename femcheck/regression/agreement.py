@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from femcheck.continuation.outcome import Status
+from femcheck.continuation.ended import Ended
 from femcheck.regression.held import Held
 
 __all__ = ["contradictions"]
@@ -18,9 +18,6 @@ PAIRS = (
 )
 """Rungs that say the same in two ways, within what both leave open."""
 
-BY_THE_CLOCK = {Status.TIME_OUT.value, Status.STOPPED.value}
-"""Endings that another machine does not come to: nothing that could be held."""
-
 
 def contradictions(held: Sequence[Held], length: float) -> list[str]:
     """Where rungs contradict each other or the clock ended them, a sentence each.
@@ -31,7 +28,7 @@ def contradictions(held: Sequence[Held], length: float) -> list[str]:
         f"{one.rung}: {one.quantity} at {row}: {value}"
         for one in held
         for row, value in one.rows.items()
-        if value in BY_THE_CLOCK
+        if isinstance(value, Ended) and value.status.is_interrupted
     ]
     for first, second in PAIRS:
         for one in _of(held, first):

@@ -12,7 +12,9 @@ from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.model import Model, Number, parse, read_json
 from beamopt.model import quantity as described
-from femcheck.regression.held import LADDER, Held
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.old_wordings import OLD_FAULTS, ended_of
+from femcheck.regression.held import LADDER, Held, Row
 from femcheck.regression.held_design import HeldDesign, design_digest
 from femcheck.regression.kept_mesh import mesh_digest
 
@@ -34,6 +36,15 @@ def _known(rung: str) -> str:
     return rung
 
 
+def _reason(key: str) -> str:
+    ended_of(key)
+    return key
+
+
+Reason = Annotated[str, AfterValidator(_reason)]
+"""The key of an ending; in earlier files its text."""
+
+
 class Entry(Model):
     """One thing held; see `Held`."""
 
@@ -42,14 +53,19 @@ class Entry(Model):
     law: str = described(..., "of the material")
     quantity: str = described(..., "what the rows are")
     unit: str = described(..., "of the numbers")
-    rows: dict[str, tuple[Number, ...] | str] = described(..., "numbers, or why there are none")
+    rows: dict[str, tuple[Number, ...] | Reason] = described(..., "numbers, or why there are none")
     tolerance: Number = described(..., "how far a row may move", low=0)
     source: str = described(..., "where the tolerance comes from")
 
     @property
     def held(self) -> Held:
         """What it holds."""
-        return Held(**{name: getattr(self, name) for name in type(self).model_fields})
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        rows: dict[str, Row] = {
+            OLD_FAULTS.get(name, name): ended_of(row) if isinstance(row, str) else row
+            for name, row in self.rows.items()
+        }
+        return Held(**values | {"rows": rows})
 
 
 class Origin(Model):
@@ -110,7 +126,7 @@ def _needs_mesh(rung: str) -> bool:
 
 
 def _entry(held: Held) -> dict[str, object]:
-    rows = {name: row if isinstance(row, str) else list(row) for name, row in held.rows.items()}
+    rows = {n: row.key if isinstance(row, Ended) else list(row) for n, row in held.rows.items()}
     values = {name: getattr(held, name) for name in sorted(Entry.model_fields)}
     return values | {"rows": rows}
 

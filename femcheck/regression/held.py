@@ -9,12 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from femcheck.models.reply import FOUND, Reply
+from femcheck.continuation.ended import Ended, NoReply
+from femcheck.models.reply import Reply
 
-__all__ = ["LADDER", "Held", "Row", "at", "columns", "of_reply", "rounding", "split"]
+__all__ = ["LADDER", "Held", "Row", "at", "columns", "of_reply", "rounding"]
 
-Row = tuple[float, ...] | str
-"""Numbers, or in words why there are none."""
+Row = tuple[float, ...] | Ended
+"""Numbers, or why there are none."""
 
 LADDER = (
     "section",
@@ -67,9 +68,9 @@ class Held:
     law: str = ""
 
     @property
-    def key(self) -> tuple[str, str, str, str]:
+    def key(self) -> tuple[str, str, str]:
         """What makes two of them the same thing at different times."""
-        return self.rung, self.resolution, self.law, self.quantity
+        return self.rung, self.resolution, self.quantity
 
     @property
     def decimals(self) -> int:
@@ -81,7 +82,7 @@ class Held:
     def written(self) -> Held:
         """The same with no more digits than that."""
         rows = {
-            name: row if isinstance(row, str) else tuple(_round(v, self.decimals) for v in row)
+            name: row if isinstance(row, Ended) else tuple(_round(v, self.decimals) for v in row)
             for name, row in self.rows.items()
         }
         tolerance = float(f"{self.tolerance:.1e}")
@@ -92,12 +93,6 @@ def _round(value: float, decimals: int) -> float:
     return round(float(value), decimals) + 0.0  # no "−0.0"
 
 
-def split(reason: str) -> tuple[str, float | None]:
-    """A reason of a solid, "limit point at P = 22.6 kPa", as its words and its pressure [kPa]."""
-    words, mark, load = reason.partition(" at P = ")
-    return words, float(load.removesuffix(" kPa")) if mark else None
-
-
 def at(pressures: FloatArray) -> str:
     """A pressure combination (3,) as a row's name."""
     return ", ".join(f"{value:.6g}" for value in pressures) + " kPa"
@@ -106,17 +101,18 @@ def at(pressures: FloatArray) -> str:
 def of_reply(pressures: FloatArray, reply: Reply) -> dict[str, Row]:
     """Rows of a model's reply at the pressures (n, 3) [kPa]."""
     return {
-        at(one): tuple(tip.tolist()) if reason == FOUND else split(reason)[0]
-        for one, tip, reason in zip(pressures, reply.tips, reply.reasons, strict=True)
+        at(one): tuple(tip.tolist()) if ended.is_found else ended
+        for one, tip, ended in zip(pressures, reply.tips, reply.endings, strict=True)
     }
 
 
 def columns(names: Iterable[str], values: FloatArray) -> dict[str, Row]:
-    """Rows by name; values (n,) or (n, k), what is not finite in words."""
+    """Rows by name; values (n,) or (n, k), with an ending in place of what is not finite."""
     rows: dict[str, Row] = {}
     for name, row in zip(names, np.asarray(values, dtype=np.float64), strict=True):
         numbers = np.atleast_1d(row)
-        rows[name] = tuple(numbers.tolist()) if np.isfinite(numbers).all() else "not a number"
+        finite = bool(np.isfinite(numbers).all())
+        rows[name] = tuple(numbers.tolist()) if finite else Ended(NoReply.NOT_FINITE)
     return rows
 
 

@@ -13,13 +13,14 @@ from beamopt.design import Design
 from beamopt.errors import InputError
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
+from beamopt.outline.ring import usual_sagitta
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, read_section
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["KeptMesher", "is_of", "make_section", "mesh_digest", "read_kept", "write_section"]
 
-SAGITTA = 0.4  # mm: chords ten times farther from the smooth outline than a design's own
+COARSER = 10.0  # times as far from the smooth outline as a design's own edges
 SIZES = SectionSizes(factor=4.0, growth=5.0)
 MATERIAL_GROUP = 10
 
@@ -43,7 +44,9 @@ def make_section(design: Design) -> SectionMesh:
     ------
     InputError : there is no such mesh.
     """
-    outline = build_outline(design.grid.build(), design.source, design.seal.rules, SAGITTA)
+    grid = design.grid.build()
+    sagitta = COARSER * usual_sagitta(grid)
+    outline = build_outline(grid, design.source, design.seal.rules, sagitta)
     section = Mesher().mesh(outline, SIZES)
     if isinstance(section, MeshFailure):
         raise InputError("", "mesh", None, f"no mesh of the section: {section}")

@@ -6,13 +6,11 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from femcheck.continuation.outcome import Status
+from femcheck.continuation.ended import Ended, NoReply
 from femcheck.regression.held import LADDER, Held, Row
 from femcheck.regression.measure import Measured
 
 __all__ = ["Moved", "compare", "is_late", "lowest", "said"]
-
-NO_ANSWER = "no answer"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +45,8 @@ def compare(design: str, held: Iterable[Held], measured: Measured) -> list[Moved
     for one in held:
         other = now.pop(one.key, None)
         if other is None:
-            said = measured.broken or NO_ANSWER
-            found += [Moved(design, one, row, was, said, math.inf) for row, was in one.rows.items()]
+            none = Ended(NoReply.BROKEN, detail=measured.broken)
+            found += [Moved(design, one, row, was, none, math.inf) for row, was in one.rows.items()]
         else:
             found += _rows(design, one, other)
     for other in now.values():  # appeared: nothing is held of it
@@ -57,8 +55,8 @@ def compare(design: str, held: Iterable[Held], measured: Measured) -> list[Moved
 
 
 def is_late(moved: Moved) -> bool:
-    """Whether the case of a row ended by its time limit today: no result, so no move."""
-    return moved.now == Status.TIME_OUT.value
+    """Whether a clock or a kill ended the case of a row today: no result, so no move."""
+    return isinstance(moved.now, Ended) and moved.now.status.is_interrupted
 
 
 def lowest(moved: Iterable[Moved]) -> Moved | None:
@@ -85,15 +83,17 @@ def _rows(design: str, held: Held, now: Held) -> Iterator[Moved]:
 
 
 def _distance(before: Row | None, now: Row | None) -> float:
-    """Length of the change; infinite where words differ, or words and numbers."""
+    """Length of the change; infinite where statuses differ, or one has numbers."""
     if isinstance(before, tuple) and isinstance(now, tuple) and len(before) == len(now):
         distance = math.dist(before, now)
         return math.inf if math.isnan(distance) else distance
-    return 0.0 if before == now else math.inf
+    if isinstance(before, Ended) and isinstance(now, Ended):
+        return 0.0 if before.status is now.status else math.inf
+    return math.inf
 
 
 def said(row: Row | None) -> str:
     """A row for people."""
     if row is None:
         return "nothing"
-    return row if isinstance(row, str) else ", ".join(f"{value:.6g}" for value in row)
+    return str(row) if isinstance(row, Ended) else ", ".join(f"{value:.6g}" for value in row)

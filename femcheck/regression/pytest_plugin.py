@@ -26,7 +26,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.getgroup("femcheck").addoption(
         UPDATE,
         action="store_true",
-        help="write what the designs of hold_design give today as their baselines",
+        help="write what the designs of hold_design give now as their baselines",
     )
 
 

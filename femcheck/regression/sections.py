@@ -33,7 +33,7 @@ def held_sections(held: HeldDesign) -> Iterator[Held]:
     if design.seal.rules.sealed:
         yield from held_moments("outline", "", design.outline.moments, radius)
     if not design.loaded_rod.loads.any:
-        counts = Counter(fault.status.value for fault in design.outline.faults)
+        counts = Counter(fault.status.name for fault in design.outline.faults)
         rows: dict[str, Row] = {kind: (count,) for kind, count in sorted(counts.items())}
         yield Held("outline", "", "faults", "", rows or {"all": (0,)}, 0.0, "counts are exact")
     yield from _response(design)

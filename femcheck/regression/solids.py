@@ -15,7 +15,7 @@ from beamopt.section.moments import Moments
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID
 from femcheck.check.case import Case, CaseResult, Solid, solve_case, workshop
 from femcheck.check.options import CheckOptions
-from femcheck.continuation.outcome import Status
+from femcheck.continuation.ended import Ended
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import stations
 from femcheck.mesh.geo import SectionSizes
@@ -24,7 +24,7 @@ from femcheck.models.question import LawChoice, Question
 from femcheck.models.reply import Reply
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
-from femcheck.regression.held import Held, Row, at, columns, of_reply, rounding, split
+from femcheck.regression.held import Held, Row, at, columns, of_reply, rounding
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.kept_mesh import KeptMesher, read_kept
 from femcheck.regression.rods import SAFETY
@@ -35,7 +35,7 @@ from femcheck.solid.winding import Wound
 __all__ = ["LAWS", "held_limit", "held_meshes", "held_solid"]
 
 LAYERS, FEWER = 3, 2
-SECONDS = 60.0  # of one case; it takes one or two
+NO_NUMBERS = "statuses are the same or not"
 NEWTON = 1e-7  # of the length: what its last step, 2e-4 mm, leaves, and 1/c² of an extrapolation
 PENALTY = 2500.0  # c of the equilibrium whose energy is held
 
@@ -53,18 +53,16 @@ class HeldLaw:
 
 
 LAWS = (
-    HeldLaw("solid, rigid-section", CheckOptions(seconds=SECONDS), ((0.2, 0, 0), (0, 0.15, 0.3))),
+    HeldLaw("solid, rigid-section", CheckOptions(), ((0.2, 0, 0), (0, 0.15, 0.3))),
     HeldLaw(
         "solid, compressible",
-        PredictionOptions(poisson_ratio=0.4, seconds=SECONDS),
+        PredictionOptions(poisson_ratio=0.4),
         ((0.05, 0, 0), (0, 0.04, 0.08)),
     ),
-    HeldLaw(
-        "solid, incompressible", PredictionOptions(seconds=SECONDS), ((0.05, 0, 0), (0, 0.04, 0.08))
-    ),
+    HeldLaw("solid, incompressible", PredictionOptions(), ((0.05, 0, 0), (0, 0.04, 0.08))),
     HeldLaw(
         "solid, wound",
-        PredictionOptions(wound=Wound.CHAMBERS, seconds=SECONDS),
+        PredictionOptions(wound=Wound.CHAMBERS),
         ((0, 0.1, 0.2),),
     ),
 )
@@ -106,7 +104,8 @@ def _fresh(outline: Outline, radius: float) -> Iterator[Held]:
     """What gmsh makes of the outline today: its vertices are kept, and so are all integrals."""
     section = Mesher().mesh(outline, SectionSizes())
     if isinstance(section, MeshFailure):
-        yield Held("gmsh", "", "areas", "mm²", {"material": str(section)}, 0.0, "in words")
+        rows: dict[str, Row] = {"material": Ended.of_mesh(section)}
+        yield Held("gmsh", "", "areas", "mm²", rows, 0.0, NO_NUMBERS)
         return
     yield from held_moments("gmsh", "", section.moments, radius)
 
@@ -131,28 +130,29 @@ def held_solid(held: HeldDesign, law: HeldLaw, *, estimate: bool) -> Iterator[He
 
 def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
     """The pressure of each supply alone beyond which there is no stable equilibrium."""
-    question = _question(held, PredictionOptions(seconds=SECONDS), np.eye(3)[:1])
+    question = _question(held, PredictionOptions(), np.eye(3)[:1])
     replies = [SolidModel(layers=LAYERS).reply(question)]
     if estimate:
         replies.append(SolidModel(layers=FEWER).reply(question))
     loads = [_limits(reply) for reply in replies]
-    digits = 5e-4 * float(np.nanmax(loads[0], initial=0.0))  # reasons have four digits
+    least = NEWTON * float(np.nanmax(loads[0], initial=0.0))
     tolerance, source = _tolerance(loads[0], loads[1] if estimate else None, ORDERS[MATERIAL])
-    said = f"{source}; at least the four digits of a reason"
+    said = f"{source}; at least what Newton leaves"
     rung, layers, law = "solid, limit", f"{LAYERS} layers", question.law_text
     rows = of_reply(question.pressures, replies[0])
-    yield Held(rung, layers, "endings", "", rows, 0.0, "in words", law)
-    late: dict[str, Row] = {
-        row: said for row, said in rows.items() if said == Status.TIME_OUT.value
-    }
+    yield Held(rung, layers, "endings", "", rows, 0.0, NO_NUMBERS, law)
+    late = {row: one for row, one in rows.items() if _is_late(one)}
     rows = columns(rows, loads[0]) | late
-    yield Held(rung, layers, "limit pressures", "kPa", rows, max(tolerance, digits), said, law)
+    yield Held(rung, layers, "limit pressures", "kPa", rows, max(tolerance, least), said, law)
+
+
+def _is_late(row: Row) -> bool:
+    return isinstance(row, Ended) and row.status.is_interrupted
 
 
 def _limits(reply: Reply) -> FloatArray:
     """(n, 1) [kPa], NaN where there is none."""
-    found = [split(reason)[1] for reason in reply.reasons]
-    return np.array([[np.nan if load is None else load] for load in found])
+    return np.array([[np.nan if one.load is None else one.load] for one in reply.endings])
 
 
 def _energy(held: HeldDesign, rung: str, pressures: FloatArray, estimate: bool) -> Iterator[Held]:
@@ -167,8 +167,8 @@ def _energy(held: HeldDesign, rung: str, pressures: FloatArray, estimate: bool) 
         value = part(fine)
         limit = _tolerance(value, None if coarse is None else part(coarse), ORDERS[RIGID])
         rows = columns([at(pressures)], value)
-        if fine.status is Status.TIME_OUT:
-            rows = dict.fromkeys(rows, Status.TIME_OUT.value)
+        if fine.status.is_interrupted:
+            rows = dict.fromkeys(rows, Ended(fine.status))
         yield Held(rung, layers, quantity, unit, rows, *limit, law)
 
 
@@ -181,7 +181,7 @@ def _volumes_of(result: CaseResult) -> FloatArray:
 
 
 def _case(held: HeldDesign, layers: int, pressures: FloatArray) -> CaseResult:
-    return solve_case(Case(_solid(held, layers), pressures, None, None, SECONDS))
+    return solve_case(Case(_solid(held, layers), pressures, None, None))
 
 
 def _solid(held: HeldDesign, layers: int) -> Solid:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,11 +114,11 @@ def accuracy_view(run: AccuracyRun, anchor: str) -> AccuracyView:
         f"Tips to {asked}",
         run.badge,
         summary.text("ending"),
-        summary.text("reason"),
+        _reason(summary),
         (
             ("law", summary.text("law")),
             ("accuracy asked for", asked),
-            ("largest estimate", f"{number(summary.number_or_nan('worst_estimate_mm'))} mm"),
+            ("largest estimate", _estimate(summary)),
             ("answered by", summary.text("chosen")),
             ("processor time", duration(run.seconds)),
         ),
@@ -128,6 +129,21 @@ def accuracy_view(run: AccuracyRun, anchor: str) -> AccuracyView:
             for table in (run.tips, run.tried, run.timing)
         ),
     )
+
+
+def _estimate(summary: Record) -> str:
+    worst = summary.number_or_nan("worst_estimate_mm")
+    return "none" if math.isnan(worst) else f"{number(worst)} mm"
+
+
+def _reason(summary: Record) -> str:
+    """Why this rung; what the error is estimated from, where the folder says it."""
+    reason = summary.text("reason")
+    if not summary.has("estimate_is"):
+        return reason
+    others = ", ".join(map(str, summary.list("compared_with")))
+    against = f" ({summary.text('chosen')} against {others})" if others else ""
+    return f"{reason}. Error: {summary.text('estimate_is')}{against}."
 
 
 def _rows(tips: Table) -> Iterator[TipRow]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
+from beamopt.files import cell_text
 from beamopt.model import read_json, read_text
 
 __all__ = ["Record", "Table", "read_record", "read_table"]
@@ -163,7 +164,8 @@ def read_table(path: Path) -> Table:
     """
     text = read_text(path)
     try:
-        rows = [tuple(row) for row in csv.reader(io.StringIO(text), strict=True)]
+        reader = csv.reader(io.StringIO(text), strict=True)
+        rows = [tuple(cell_text(cell) for cell in row) for row in reader]
     except csv.Error as error:
         raise InputError(path, "", None, f"no table that can be read: {error}") from None
     if not rows or len(set(rows[0])) < len(rows[0]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -140,6 +141,13 @@ def _tiles(run: SolidRun) -> Iterator[tuple[str, str]]:
     yield "tolerance asked", per_cent(summary.number("verdict.agree"))
     if summary.has("stable_box_kpa"):
         yield "stable box", f"{number(summary.number('stable_box_kpa'))} kPa"
+    if summary.has("safe_box.kpa"):
+        yield "advised at most", f"{number(summary.number('safe_box.kpa'))} kPa"
+    if summary.has("meshes"):
+        yield "ratio of two meshes' limits", number(summary.number_or_nan("meshes.largest_ratio"))
+    if summary.has("difference.worst_left_of_displacement"):
+        left = summary.number_or_nan("difference.worst_left_of_displacement")
+        yield "mesh and penalty leave", per_cent(left)
     if np.isfinite(found.stretch).any():
         yield "largest stretch", number(float(np.nanmax(found.stretch)))
 
@@ -248,5 +256,5 @@ def _fixed(value: Any, digits: int) -> str:
 
 def _meanings(found: Combinations) -> tuple[tuple[str, str], ...]:
     """Every status that occurs, how often, and what it means."""
-    counts = {status: found.statuses.count(status) for status in dict.fromkeys(found.statuses)}
-    return tuple((f"{status} ({count})", meaning(status)) for status, count in counts.items())
+    counts = Counter(zip(found.texts, found.endings, strict=True))
+    return tuple((f"{text} ({count})", meaning(ended)) for (text, ended), count in counts.items())

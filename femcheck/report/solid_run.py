@@ -15,7 +15,8 @@ from beamopt.errors import InputError
 from beamopt.model import read_text
 from beamopt.workspace import NODES
 from femcheck.check.subject import LoadedDesignError, Subject
-from femcheck.continuation.outcome import Status
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.old_wordings import ended_of
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
 
@@ -35,7 +36,9 @@ class Combinations:
     difference : (27,) between them [mm]. share : (27,) of the displacement; both may be NaN.
     volume_ratios : (27, 3) of the chambers to those at rest, or NaN.
     stretch : (27,) largest principal stretch; NaN where the table does not have it.
-    statuses : (27,) how each ended. ends_at : (27,) load at which its path ends [kPa], or NaN.
+    texts : (27,) how each ended, as its table says. endings : (27,) the same as statuses; None
+    where an older table says what is not known. ends_at : (27,) load at which its path ends [kPa],
+    or NaN.
     """
 
     length: float
@@ -46,7 +49,8 @@ class Combinations:
     share: FloatArray
     volume_ratios: FloatArray
     stretch: FloatArray
-    statuses: tuple[str, ...]
+    texts: tuple[str, ...]
+    endings: tuple[Ended | None, ...]
     ends_at: FloatArray
 
     @property
@@ -70,9 +74,9 @@ class Combinations:
         return np.asarray(np.linalg.norm(self.solid - [0.0, 0.0, self.length], axis=1))
 
     def ending(self, row: int) -> str:
-        """How a combination ended, and where."""
-        status, at = self.statuses[row], self.ends_at[row]
-        return status if np.isnan(at) else f"{status} at P = {at:.4g} kPa"
+        """How a combination ended, and where, for people."""
+        text, at = self.texts[row], self.ends_at[row]
+        return text if np.isnan(at) else f"{text} at P = {at:.4g} kPa"
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +104,11 @@ class SolidRun:
     def is_prediction(self) -> bool:
         """Whether a material was asked about, not the implementation."""
         return self.summary.text("verdict.kind") == "prediction"
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether two meshes bear its verdict out; folders that do not say count as such."""
+        return not self.summary.has("verdict.certain") or self.summary.flag("verdict.certain")
 
     @cached_property
     def seconds(self) -> float:
@@ -161,9 +170,9 @@ def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinatio
     if np.isnan(beam).any():
         raise InputError(table.file, "beam_x", "", "must be a number in every row")
     solid = table.numbers(*(f"solid_{axis}" for axis in AXES))
-    statuses = tuple(table.column("status"))
-    for row, status in enumerate(statuses):
-        if status == Status.CONVERGED.value and np.isnan(solid[row]).any():
+    texts, endings = tuple(table.column("status")), _endings(table)
+    for row, ended in enumerate(endings):
+        if ended is not None and ended.is_found and np.isnan(solid[row]).any():
             raise InputError(table.file, f"combination {row + 1}, solid_x", "", "must be a number")
     difference, share = table.numbers("difference_mm", "difference_of_displacement").T
     names = ("largest_stretch", "ends_at_kpa")
@@ -178,6 +187,27 @@ def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinatio
         share,
         ratios,
         extra[:, 0],
-        statuses,
+        texts,
+        endings,
         extra[:, 1],
     )
+
+
+def _endings(table: Table) -> tuple[Ended | None, ...]:
+    """Of the column "ended"; an earlier table has texts alone."""
+    if "ended" not in table.header:
+        return tuple(map(_of_text, table.column("status")))
+    endings = []
+    for row, key in enumerate(table.column("ended"), 1):
+        try:
+            endings.append(Ended.of_key(key))
+        except ValueError as error:
+            raise InputError(table.file, f"combination {row}, ended", key, str(error)) from None
+    return tuple(endings)
+
+
+def _of_text(text: str) -> Ended | None:
+    try:
+        return ended_of(text)
+    except ValueError:
+        return None

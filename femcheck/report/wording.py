@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from femcheck.continuation.ended import Ended, ReplyStatus
 from femcheck.continuation.outcome import Status
 from femcheck.report.solid_run import SolidRun
 
@@ -21,17 +22,21 @@ __all__ = [
     "pressures_text",
 ]
 
-MEANINGS: Mapping[str, str] = {
-    Status.CONVERGED.value: "an equilibrium was found; for predictions, a stable one",
-    Status.LIMIT_POINT.value: "the largest pressure of its path: the section balloons, or a thin "
+MEANINGS: Mapping[ReplyStatus, str] = {
+    Status.CONVERGED: "an equilibrium was found; for predictions, a stable one",
+    Status.LIMIT_POINT: "the largest pressure of its path: the section balloons, or a thin "
     "wall of it snaps; beyond it there is no equilibrium near this one",
-    Status.BUCKLED.value: "it leaves its path while the volume still grows; where few nodes move, "
+    Status.BUCKLED: "it leaves its path while the volume still grows; where few nodes move, "
     "a surface creases",
-    Status.INVERTED.value: "the mesh gave way, not the actuator: the computation ends here",
-    Status.STEP_TOO_SMALL.value: "the computation could not follow its path any further",
-    Status.LINEAR_SOLVER.value: "the tangent was singular, or too badly conditioned to solve",
-    Status.TIME_OUT.value: "more time (--seconds) may bring an answer",
-    Status.STOPPED.value: "it was killed or never begun; --resume goes on with it",
+    Status.BEYOND_LAW: "the largest stretch passes what the law describes: beyond it the response "
+    "falls that was fitted to a test; another law may have an answer",
+    Status.INVERTED: "the mesh gave way, not the actuator: the computation ends here",
+    Status.STEP_TOO_SMALL: "the computation could not follow its path any further",
+    Status.LINEAR_SOLVER: "the tangent was singular, or too badly conditioned to solve",
+    Status.WORK_LIMIT: "more work (--iterations) may bring an answer",
+    Status.TIME_OUT: "the clock set by --seconds ran out, which depends on the machine; "
+    "--resume tries it again",
+    Status.STOPPED: "it was killed or never begun; --resume goes on with it",
 }
 
 
@@ -48,16 +53,18 @@ def badge_of(run: SolidRun) -> Badge:
     if found is None:
         return Badge("no answer", "none")
     missing = int((found.loaded & ~found.answered).sum())
+    unsure = "" if run.is_certain else ", uncertain"
     if run.summary.flag("verdict.holds"):
-        return Badge("beam holds" if run.is_prediction else "agrees", "good")
+        said = "beam holds" if run.is_prediction else "agrees"
+        return Badge(said + unsure, "good" if run.is_certain else "none")
     if missing:
-        return Badge(f"{missing} of {int(found.loaded.sum())} without answer", "bad")
-    return Badge("beam is off" if run.is_prediction else "differs", "bad")
+        return Badge(f"{missing} of {int(found.loaded.sum())} without answer{unsure}", "bad")
+    return Badge(("beam is off" if run.is_prediction else "differs") + unsure, "bad")
 
 
-def meaning(status: str) -> str:
-    """What a status means, "" for one that is not known here."""
-    return MEANINGS.get(status, "")
+def meaning(ended: Ended | None) -> str:
+    """What an ending means, "" for one that is not known here."""
+    return "" if ended is None else MEANINGS.get(ended.status, "")
 
 
 def number(value: float, digits: int = 3) -> str:

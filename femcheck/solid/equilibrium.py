@@ -104,6 +104,15 @@ class Equilibrium:
         other._take(law)
         return other
 
+    def largest_stretch(self, state: State) -> tuple[float, FloatArray]:
+        """Largest principal stretch at a quadrature point, and its undeformed place (3,) [mm]."""
+        _, C, _ = self.deformation(state)
+        flat = C.reshape(-1, 6)
+        whole = flat[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
+        largest = np.linalg.eigvalsh(whole)[:, 2]
+        place = int(np.argmax(largest))
+        return float(np.sqrt(largest[place])), self.body.places.reshape(-1, 3)[place]
+
     @property
     def hydrostatic_unknowns(self) -> int:
         """Number of hydrostatic pressures: negative eigenvalues of a stable tangent."""

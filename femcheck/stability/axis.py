@@ -7,25 +7,7 @@ from dataclasses import dataclass
 
 from femcheck.stability.specimen import Specimen
 
-__all__ = ["Axis", "Column", "Mark"]
-
-
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """A limit pressure that somebody else found.
-
-    pressure : [kPa]. source : in words.
-    is_bound : whether it only says that the limit lies below.
-    """
-
-    pressure: float
-    source: str
-    is_bound: bool = False
-
-    @property
-    def text(self) -> str:
-        """As it stands in figures and tables."""
-        return f"<{self.pressure:g}" if self.is_bound else f"{self.pressure:g}"
+__all__ = ["Axis", "Column"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +20,6 @@ class Column:
 
     label: str
     specimen: Specimen
-    marks: tuple[Mark, ...] = ()
     exact: float | None = None
     compare: bool = False
 

@@ -17,9 +17,11 @@ class Ending(Enum):
     UNSTABLE = "equilibrium that is unstable"
     LIMIT_POINT = Status.LIMIT_POINT.value
     BUCKLED = Status.BUCKLED.value
+    BEYOND_LAW = Status.BEYOND_LAW.value
     INVERTED = Status.INVERTED.value
     STEP_TOO_SMALL = Status.STEP_TOO_SMALL.value
     LINEAR_SOLVER = Status.LINEAR_SOLVER.value
+    WORK_LIMIT = Status.WORK_LIMIT.value
     TIME_OUT = Status.TIME_OUT.value
     STOPPED = Status.STOPPED.value
     NO_MESH = "no mesh"
@@ -29,6 +31,11 @@ class Ending(Enum):
     def has_equilibrium(self) -> bool:
         """Whether there is a stable equilibrium, as far as is known."""
         return self in (Ending.STABLE, Ending.UNCHECKED)
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether a map that goes on tries it once more, as of the `Status` of its name."""
+        return self.name in Status.__members__ and Status[self.name].is_interrupted
 
     @property
     def says_none(self) -> bool:

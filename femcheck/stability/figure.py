@@ -26,9 +26,11 @@ LOOKS: dict[Ending, tuple[str, str, str]] = {
     Ending.UNSTABLE: ("u", "#f0e442", "#202020"),
     Ending.LIMIT_POINT: ("L", "#d55e00", "#ffffff"),
     Ending.BUCKLED: ("B", "#7a1f5c", "#ffffff"),
+    Ending.BEYOND_LAW: ("l", "#c8a2c8", "#202020"),
     Ending.INVERTED: ("I", "#101010", "#ffffff"),
     Ending.STEP_TOO_SMALL: ("t", "#e69f00", "#202020"),
     Ending.LINEAR_SOLVER: ("n", "#505050", "#ffffff"),
+    Ending.WORK_LIMIT: ("W", "#808080", "#ffffff"),
     Ending.TIME_OUT: ("T", "#808080", "#ffffff"),
     Ending.STOPPED: ("X", "#808080", "#ffffff"),
     Ending.NO_MESH: ("m", "#ffffff", "#606060"),
@@ -70,7 +72,6 @@ def _panel(axes: Axes, one: AxisFound) -> None:
     axis = one.axis
     for x, row in enumerate(one.rows):
         _cells(axes, x, row)
-        _marks(axes, x, row)
     _limit_line(axes, one)
     _validity(axes, one)
     across, down = len(axis.columns), len(axis.pressures)
@@ -198,31 +199,6 @@ def _validity(axes: Axes, one: AxisFound) -> None:
             _line(axes, [middle - 0.46, middle + 0.46], [height, height], **look)
 
 
-def _marks(axes: Axes, x: int, row: Row) -> None:
-    for mark in row.column.marks:
-        height = height_of(row.axis, mark.pressure)
-        marker = "v" if mark.is_bound else "D"
-        look: dict[str, Any] = {
-            "mfc": "#ffffff",
-            "mec": "#000000",
-            "mew": 1.1,
-            "ms": 6,
-            "zorder": 7,
-        }
-        axes.plot(x + 0.5, height, marker, **look)
-        text = axes.annotate(
-            mark.text,
-            (x + 0.5, height),
-            (6, 0),
-            textcoords="offset points",
-            fontsize=6.5,
-            weight="bold",
-            va="center",
-            zorder=8,
-        )
-        text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.9})
-
-
 def _note(one: AxisFound) -> str:
     """Where the beam is valid, in a few words."""
     found = [
@@ -260,8 +236,6 @@ def _legend(found: Sequence[AxisFound]) -> list[Any]:
     point: dict[str, Any] = {"ls": "", "mfc": "#ffffff", "mec": "#000000"}
     handles += [
         Line2D([], [], color=LIMIT_COLOUR, lw=2.0, label="where the stable path from rest ends"),
-        Line2D([], [], marker="D", ms=6, label="limit found by others", **point),
-        Line2D([], [], marker="v", ms=6, label="others: below this", **point),
         Line2D([], [], marker="o", ms=5, label="limit in closed form", **point),
         Line2D(
             [], [], color=VALID_COLOUR, lw=1.4, ls=(0, (4, 2)), label=f"beam off by {AGREE:.0%}"

@@ -36,10 +36,7 @@ class Journal:
     def __init__(self, path: Path, axes: Mapping[str, Axis]) -> None:
         self.results: dict[Key, Result] = {}
         self._lines = LineJournal(path, {"schema": SCHEMA}, "stability map of solids")
-        try:
-            read = [(_key(d), str(d["question"]), _result(d)) for d in self._lines.entries]
-        except (ValueError, KeyError, TypeError, AttributeError):
-            raise self._lines.damaged() from None
+        read = self._lines.read(lambda data: (_key(data), str(data["question"]), _result(data)))
         for key, question, result in read:
             self._take(key, question, result, axes)
 

@@ -1,4 +1,4 @@
-"""What the map says, in sentences: counts, limits beside those of others, the beam's validity."""
+"""What the map says, in sentences: counts, limits beside closed forms, the beam's validity."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from textwrap import fill
 
-from femcheck.stability.axis import Mark
 from femcheck.stability.ending import Ending
 from femcheck.stability.found import AxisFound, Row, agreement_of
 from femcheck.stability.solve import TraceResult
@@ -34,7 +33,7 @@ def reading(found: Sequence[AxisFound]) -> str:
     rows = [row for one in found for row in one.rows]
     parts = ["# What the stability map of the solid says", _counts(found, rows), HOW, SECTION]
     parts += ["## Cells and lines", *_agreement(rows)]
-    parts += ["## Limits beside those of others", _published(rows)]
+    parts += ["## Limits beside closed forms", _closed_form(rows)]
     parts += ["## How far the mesh matters", *_finer(rows)]
     parts += ["## Where the beam is right", *(_valid_in(one) for one in found)]
     for one in found:
@@ -82,28 +81,19 @@ def _agreement(rows: Sequence[Row]) -> Iterator[str]:
         yield "\n".join([*(f"- {line}" for line in listed[:MOST]), *more])
 
 
-def _published(rows: Sequence[Row]) -> str:
+def _closed_form(rows: Sequence[Row]) -> str:
+    """Limits of closed tubes beside the exact ones of long tubes; see `closed_tube_limit`."""
     lines = []
     for row in rows:
-        marks = list(row.column.marks)
-        if row.column.exact is not None:
-            marks.append(Mark(row.column.exact, "quadrature, long tube with closed ends"))
-        lines += [_beside(row, mark) for mark in marks]
-    return _table("specimen | found [kPa] | by others [kPa] | difference | source", lines)
-
-
-def _beside(row: Row, mark: Mark) -> tuple[str, ...]:
-    limit = None if row.trace is None else row.trace.critical
-    finer = None if row.finer is None else row.finer.critical
-    shown = "none" if limit is None else f"{limit:.4g}"
-    if finer is not None:
-        shown += f" (finer mesh {finer:.4g})"
-    theirs = f"below {mark.pressure:g}" if mark.is_bound else f"{mark.pressure:.5g}"
-    off = ""
-    best = finer or limit
-    if best is not None and not (mark.is_bound and best < mark.pressure):
-        off = f"{best / mark.pressure - 1:+.1%}"
-    return f"{row.axis.title}: {row.label}", shown, theirs, off, mark.source
+        exact, limit = row.column.exact, None if row.trace is None else row.trace.critical
+        if exact is not None:
+            shown, off = "none", ""
+            if limit is not None:
+                shown, off = f"{limit:.4g}", f"{limit / exact - 1:+.1%}"
+            lines.append((f"{row.axis.title}: {row.label}", shown, f"{exact:.5g}", off))
+    if not lines:
+        return "No specimen of this map has a limit in closed form."
+    return _table("specimen | found [kPa] | long tube, closed ends [kPa] | difference", lines)
 
 
 def _finer(rows: Sequence[Row]) -> Iterator[str]:

@@ -18,7 +18,6 @@ from beamopt.study.pool import processes
 from femcheck.check.folder import PACKAGES
 from femcheck.check.work import solve_all
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
 from femcheck.stability.journal import Journal
@@ -29,7 +28,6 @@ from femcheck.stability.work import Key, MapWork, Result
 __all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
 
 JOURNAL = "journal.jsonl"
-AGAIN = (Ending.STOPPED, Ending.TIME_OUT)  # a map that goes on tries these once more
 WRITTEN = "written_with"  # what tables and figure were made with, which may be later
 NAMES = (
     *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),
@@ -69,7 +67,7 @@ def run_map(
     claim_folder(out, JOURNAL, resume=resume)
     clear_leftovers(out, (JOURNAL, *NAMES))
     journal = Journal(out / JOURNAL, axes)
-    known = {key: one for key, one in journal.results.items() if one.ending not in AGAIN}
+    known = {key: one for key, one in journal.results.items() if not one.ending.is_interrupted}
     chosen = {name: axis for name, axis in axes.items() if wanted is None or name in wanted}
     work = MapWork(chosen, {key: one for key, one in known.items() if key[0] in chosen})
     before, total = len(work.results), len(work.keys)

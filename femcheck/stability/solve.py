@@ -28,7 +28,6 @@ __all__ = ["TRACK", "CellResult", "TraceResult", "apart_of", "solve_cell", "trac
 ALONE = (1.0, 0.0, 0.0)
 SMALLEST_STEP = 1 / 16
 STILL = 1e-6  # mm that a beam's tip moves, below which a share says nothing
-SECONDS = 900.0  # of a case
 
 TRACK = ("load", "x", "y", "z", "apart_x", "apart_y", "apart_z", "unstable")
 """Columns of a track: P [kPa], tip of the solid [mm], its distance from the beam's tip over the
@@ -91,7 +90,7 @@ def solve_cell(specimen: Specimen, pressure: float) -> CellResult:
     if isinstance(solid, Absent):
         return CellResult(solid.ending, reason=solid.reason)
     pressures = pressure * np.array(ALONE)
-    found = solve_case(Case(solid, pressures, None, None, SECONDS, SMALLEST_STEP))
+    found = solve_case(Case(solid, pressures, None, None, smallest=SMALLEST_STEP))
     outcome = found.outcome
     unstable = None if outcome.state is None else outcome.negative_eigenvalues
     tip, stretch = _shown(solid, found, pressure)
@@ -126,7 +125,7 @@ def trace_row(specimen: Specimen, pressures: tuple[float, ...]) -> TraceResult:
     solid = solid_of(specimen)
     if isinstance(solid, Absent):
         return TraceResult(solid.ending, reason=solid.reason)
-    found = trace_ray(RayTask(solid, Ray(ALONE, pressures), SECONDS))
+    found = trace_ray(RayTask(solid, Ray(ALONE, pressures)))
     unstable = None if (found.track[:, 7] < 0).any() else 0
     has_end = bool(np.isfinite(found.critical))
     return TraceResult(

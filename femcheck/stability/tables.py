@@ -19,8 +19,7 @@ CASES = (
 )
 LIMITS = (
     "axis,column,limit_kPa,status,growth,snaps_kPa,triangles,layers,unknowns,finer_kPa,"
-    "finer_status,finer_triangles,finer_layers,coarse_over_finer,exact_kPa,over_exact,"
-    "published_kPa,over_published,published_source"
+    "finer_status,finer_triangles,finer_layers,coarse_over_finer,exact_kPa,over_exact"
 )
 VALIDITY = "axis,column,within_5_percent,from_kPa,to_kPa,to_is"
 TIMES = "axis,column,task,seconds"
@@ -52,7 +51,7 @@ def _cases(row: Row) -> list[tuple[object, ...]]:
 
 
 def _limits(row: Row) -> list[tuple[object, ...]]:
-    """A line a published limit, at least one."""
+    """A line, where a path was followed."""
     trace, finer, exact = row.trace, row.finer, row.column.exact
     if trace is None:
         return []
@@ -61,15 +60,12 @@ def _limits(row: Row) -> list[tuple[object, ...]]:
     if finer is not None:
         said = (_short(finer.critical), finer.ending.value, finer.triangles, finer.layers)
         fine = (*said, _ratio(limit, finer.critical))
-    first = (
+    line = (
         *(row.axis.name, row.label, _short(limit), trace.ending.value, _short(trace.growth)),
         *(" ".join(f"{one:.6g}" for one in trace.snaps), trace.triangles, trace.layers),
         *(trace.unknowns, *fine, _short(exact), _ratio(limit, exact)),
     )
-    marks: list[tuple[object, ...]] = [
-        (one.text, _ratio(limit, one.pressure), one.source) for one in row.column.marks
-    ]
-    return [(*first, *mark) for mark in marks or [NOTHING]]
+    return [line]
 
 
 def _validity(row: Row) -> list[tuple[object, ...]]:

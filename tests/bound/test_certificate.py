@@ -172,7 +172,7 @@ def test_anothers_folder_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFix
         (["nonsense"], "no such scene"),
         (["missing.csv"], "missing.csv"),
         (["missing.json"], "missing.json"),
-        (["random-section", "--set", "actuator.length=1"], "5 … 5000 mm"),
+        (["random-section", "--set", "actuator.length=0.01"], "0.1 … 100000 mm"),
         ([str(TABLE), "--set", "actuator.size=1"], "actuator.size"),
         ([str(DRAWN), "--set", "nonsense"], "section.key=value"),
         (["wrong.csv"], "must name"),

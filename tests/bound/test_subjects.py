@@ -58,6 +58,49 @@ def test_a_table_of_points_that_is_wrong_is_one_line(
     assert "are they mm?" in err
 
 
+@pytest.mark.parametrize(
+    ("rows", "keys", "length", "source"),
+    [
+        (PAIRS, (), 100.0, "rest"),
+        (PAIRS[1:], (), 100.0, "default"),
+        (PAIRS[1:], ("actuator.length=90",), 90.0, "asked"),
+        (PAIRS, ("actuator.length=90",), 90.0, "asked"),
+        ([(0, 0, 0, 0, 0, 2), *PAIRS[1:]], (), 100.0, "default"),  # no actuator is that short
+        (PAIRS, ("rod.rest_curvature=[0.01, 0, 0]",), 100.0, "default"),
+    ],
+)
+def test_the_length_is_that_of_the_tip_without_pressure(
+    tmp_path: Path, rows: list[tuple[float, ...]], keys: tuple[str, ...], length: float, source: str
+) -> None:
+    assumed = bound_of(table(tmp_path / "a.csv", rows), tmp_path / "a", *keys)["assumed"]
+    assert isinstance(assumed, dict)
+    assert (assumed["length_mm"], assumed["length_from"]) == (length, source)
+
+
+def test_a_bound_scales_with_its_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Everything 0.58 times as large, also its frame moved: L is 0.58² of it."""
+    rows = workspace_rows()
+    small = [(*row[:3], *(0.58 * value for value in row[3:])) for row in rows]
+    moved = [(*row[:3], row[3] + 7, row[4] - 2, row[5] + 30) for row in small]
+    of_100 = bound_of(table(tmp_path / "a.csv", rows), tmp_path / "a")
+    of_58 = bound_of(table(tmp_path / "b.csv", small), tmp_path / "b")
+    said = capsys.readouterr().out
+    assert "length 58 mm (the table's tip without pressure)" in " ".join(said.split())
+    assert "no section can move" not in said
+    base = "target.base_origin=[7.0, -2.0, 30.0]"
+    elsewhere = bound_of(table(tmp_path / "c.csv", moved), tmp_path / "c", base)
+    for found in (of_58, elsewhere):
+        assert found["response"]["L"] == pytest.approx(0.58**2 * of_100["response"]["L"], rel=1e-6)  # type: ignore[index]
+
+
+def test_a_length_that_the_table_contradicts_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bound_of(table(tmp_path / "a.csv", PAIRS), tmp_path / "a", "actuator.length=58")
+    said = " ".join(capsys.readouterr().out.split())
+    assert "is (0, 0, 100) mm, which no section can move from (0, 0, 58)" in said
+
+
 def test_weights_and_repeated_rows_count(tmp_path: Path) -> None:
     rows = workspace_rows()
     weighed = [(*row, 0 if k == 3 else 1) for k, row in enumerate(rows)]

@@ -9,8 +9,10 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import FOUND, Ended
+from femcheck.continuation.outcome import Status
 from femcheck.models.question import LawChoice, Question
-from femcheck.models.reply import FOUND, Reply
+from femcheck.models.reply import Reply
 from femcheck.models.solid import PENALTIES, SolidModel
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.elements import ELEMENTS
@@ -19,6 +21,7 @@ from tests.femcheck.check.small import design_of, three_circles
 AT = np.array([[20.0, 0.0, 0.0], [40.0, 20.0, 0.0], [0.0, 40.0, 40.0]])
 NEO = PredictionOptions()
 RIGID = CheckOptions()
+LIMIT = Ended(Status.LIMIT_POINT, 3.0)
 DESIGN = design_of(three_circles())
 
 Off = Callable[[SolidModel], float]
@@ -38,14 +41,14 @@ class MadeUp:
     """Solids whose tips are the beam's, which are taken for the truth, but for `off` [mm].
 
     off : how far a model is off. shares : (n, 3) along which directions; along x if left out.
-    missing : rows without a tip, by model. reason : why. asked : models that were asked.
+    missing : rows without a tip, by model. ended : why. asked : models that were asked.
     seconds : what a model takes of a clock that `clock` reads.
     """
 
     off: Off
     shares: FloatArray | None = None
     missing: Callable[[SolidModel], Sequence[int]] = lambda model: ()
-    reason: str = "limit point at P = 3 kPa"
+    ended: Ended = LIMIT
     seconds: Callable[[SolidModel], float] = lambda model: float(model.layers)
     asked: list[SolidModel] = field(default_factory=list)
     spent: float = 0.0
@@ -58,8 +61,8 @@ class MadeUp:
         tips = question.design.tips(question.pressures) + self.off(model) * shares
         gone = list(self.missing(model))
         tips[gone] = np.nan
-        reasons = tuple(self.reason if row in gone else FOUND for row in range(n))
-        return Reply(tips, reasons, 1000 * model.layers, f"{model.layers} made-up layers")
+        endings = tuple(self.ended if row in gone else FOUND for row in range(n))
+        return Reply(tips, endings, 1000 * model.layers, f"{model.layers} made-up layers")
 
     def clock(self) -> float:
         return self.spent

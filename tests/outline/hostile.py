@@ -128,6 +128,12 @@ DRAWINGS: dict[str, list[Shape]] = {
     "circles that nearly touch": [Circle(1, (17, 0), 3.0), Circle(1, (17, 6.05), 3.0)],
     "a circle in a circle": [Circle(1, (17, 0), 5.0), Circle(2, (17, 0), 2.0)],
     "rounded to a circle": [RingPiece(1, (13, 22), (0, 80), 4.5)],
+    "corners that only just fit": [
+        Circle(2, (10.0, -21.0), 20.0),
+        Circle(1, (-7.0, 21.0), 20.0),
+        RingPiece(2, (2.2, 14.6), (-180.0, 0.0), 6.199999999999999),
+    ],
+    "a row of circles that touch": [Circle(k % 3 + 1, (17.0 - 4 * k, 0.0), 2.0) for k in range(8)],
     "from the axis": [RingPiece(1, (0, 22), (0, 270), 3.0)],
     "outside": [Circle(3, (60, 0), 10.0)],
     "enormous": [Circle(3, (1e6, 0), 1e6 - 15)],

@@ -113,7 +113,8 @@ def test_small_chambers_are_filled() -> None:
     shapes: list[Shape] = [Circle(1, (17, 0), 1.2), Circle(2, (-17, 0), 0.9)]
     outline = build_outline(RING, shapes, RULES)
     assert [chamber.supply for chamber in outline.chambers] == [1]
-    assert statuses(outline) == [FaultKind.NO_CHAMBER] * 2
+    assert statuses(outline) == [*[FaultKind.NO_CHAMBER] * 2, FaultKind.LOST]
+    assert found(outline, FaultKind.LOST).drawn == 1
 
 
 def test_chambers_open_to_a_surface_or_to_each_other() -> None:
@@ -158,7 +159,8 @@ def test_walls_and_skins_are_measured_and_named() -> None:
     ]
     (skin,) = thicknesses(regions, ring_polygon(RING), SealRules(1.0), 0.1)
     assert skin.value == pytest.approx(0.5, abs=2e-3)
-    assert str(skin) == f"skin over supply 3 is {skin.value:.3f} mm at (−24.7, 0.0) mm, asked 1"
+    assert skin.place == pytest.approx((-24.75, 0.0), abs=0.02)
+    assert str(skin) == f"skin over supply 3 is {skin.value:.3f} mm at (−24.8, 0.0) mm, asked 1"
 
 
 def _polygon(chamber):  # type: ignore[no-untyped-def]
@@ -202,7 +204,14 @@ def test_severities() -> None:
         FaultKind.UNSEALED,
         FaultKind.INVALID,
     }
-    assert notices == {FaultKind.ISLAND, FaultKind.NO_CHAMBER}
+    assert notices == {
+        FaultKind.ISLAND,
+        FaultKind.NO_CHAMBER,
+        FaultKind.CUT,
+        FaultKind.HIDDEN,
+        FaultKind.LOST,
+        FaultKind.WALL_ELEMENTS,
+    }
 
 
 @pytest.mark.parametrize("status", FaultKind)

@@ -84,5 +84,5 @@ def test_two_points_share_a_plane_by_their_bisector() -> None:
 
 
 def test_points_beyond_reckoning_are_refused() -> None:
-    with pytest.raises(ValueError, match="at most 1e\\+06 mm"):
-        regions(FeaturePoints([0, 2e6], [0, 0], [1, 2]), EXTENT)
+    with pytest.raises(ValueError, match="at most 1e\\+08 mm"):
+        regions(FeaturePoints([0, 2e8], [0, 0], [1, 2]), EXTENT)

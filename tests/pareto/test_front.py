@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -17,11 +18,13 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Judge
 from beamopt.pareto.front import Front
+from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.run import find_front
 from beamopt.pareto.scores import nondominated, scored
 from beamopt.pareto.search import FrontRecord, FrontSearch, front_values
 from beamopt.scene import Scene, load_scene
-from tests.validation.resume import content
+from tests.journals import flipped, rewritten
+from tests.validation.resume import content, everything
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=6"])
 SMALL = 16
@@ -167,11 +170,46 @@ def test_it_can_be_given_more_generations(whole: Path, tmp_path: Path) -> None:
     assert content(tmp_path / "front") == content(whole)
 
 
+def test_every_changed_digit_is_noticed(whole: Path, tmp_path: Path) -> None:
+    path, about = tmp_path / "journal.jsonl", (SCENE, ("L", "mass"), SMALL)
+    content = b"".join((whole / "journal.jsonl").read_bytes().splitlines(keepends=True)[:2])
+    for damaged in flipped(content):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"journal\.jsonl: line [12]"):
+            FrontJournal(path, *about)
+    path.write_bytes(content)
+    assert FrontJournal(path, *about).last_generation == 0
+
+
+def test_a_front_never_goes_backwards(whole: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "front"))
+    before = everything(folder)
+    fewer = load_scene("hand-drawn-section", ["search.generations=5"])
+    with pytest.raises(InputError) as caught:
+        find_front(fewer, ("L", "mass"), folder, population=SMALL, resume=True, figures=False)
+    assert (caught.value.key, caught.value.value) == ("search.generations", 5)
+    assert everything(folder) == before
+
+
+def test_resuming_a_finished_front_changes_no_byte(whole: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "front"))
+    before = everything(folder)
+    front = find_front(SCENE, ("L", "mass"), folder, population=SMALL, resume=True)
+    assert front.timing.judged == 0
+    assert everything(folder) == before
+
+    def interrupt(record: FrontRecord) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        find_front(SCENE, ("L", "mass"), folder, population=SMALL, resume=True, callback=interrupt)
+    assert everything(folder) == before
+
+
 def test_only_what_is_cut_off_is_judged_again(whole: Path, tmp_path: Path) -> None:
     lines = (whole / "journal.jsonl").read_text().splitlines(keepends=True)
-    record = json.loads(lines[1])
-    record["judged"][3][1] = 0.125
-    (tmp_path / "journal.jsonl").write_text(lines[0] + json.dumps(record) + "\n")
+    L = json.dumps(json.loads(lines[1])["judged"][3][1])
+    (tmp_path / "journal.jsonl").write_text(lines[0] + rewritten(lines[1], L, "0.125"))
     front = find_front(SCENE, ("L", "mass"), tmp_path, population=SMALL, resume=True, figures=False)
     assert front.values[0, 0] == 0.125
 
@@ -190,10 +228,10 @@ def test_only_what_is_cut_off_is_judged_again(whole: Path, tmp_path: Path) -> No
 def test_a_changed_line_is_named(old: str, new: str, whole: Path, tmp_path: Path) -> None:
     lines = (whole / "journal.jsonl").read_text().splitlines(keepends=True)
     assert old in lines[2]
-    lines[2] = lines[2].replace(old, new, 1)
-    (tmp_path / "journal.jsonl").write_text("".join(lines))
-    with pytest.raises(InputError, match=r"line 3|no journal"):
-        find_front(SCENE, ("L", "mass"), tmp_path, population=SMALL, resume=True, figures=False)
+    for line in (lines[2].replace(old, new, 1), rewritten(lines[2], old, new)):
+        (tmp_path / "journal.jsonl").write_text("".join([*lines[:2], line, *lines[3:]]))
+        with pytest.raises(InputError, match="line 3"):
+            find_front(SCENE, ("L", "mass"), tmp_path, population=SMALL, resume=True, figures=False)
 
 
 @pytest.mark.parametrize(

@@ -27,11 +27,11 @@ def lines() -> list[Line]:
 
 def panel(columns: int = 3) -> Panel:
     cells: list[list[Cell | None]] = [
-        [Cell("right", 0.002, False), Cell("right", 0.2, True), Cell("undecided", NAN, False)],
+        [Cell("RIGHT", 0.002, False), Cell("RIGHT", 0.2, True), Cell("UNDECIDED", NAN, False)],
         [
-            Cell("wrong branch", 12.0, False, 0.25),
+            Cell("WRONG_BRANCH", 12.0, False, 0.25),
             None,
-            Cell("tip without equilibrium", 1e-5, False),
+            Cell("NO_SUCH_TIP", 1e-5, False),
         ],
     ]
     return Panel("loads", ["modes", "shooting"], ["0.01", "1", "100"][:columns], cells)

@@ -192,6 +192,29 @@ def test_twins_go() -> None:
     assert len(found.points) == len(with_cells(points, None)) == len(near)
 
 
+@pytest.mark.parametrize("name", ["random-section", "sealed-section"])
+def test_what_nothing_better_was_found_for_is_as_it_was(name: str) -> None:
+    """Twins included; a section that had to be made symmetric is said to be another one."""
+    judge, symmetry = judge_of(name), mirror_symmetry()
+    idle, near = Refining(flips=0, steps=0, outline_steps=0, rounds=1), random_points(7)
+    whole = symmetry.symmetrised(near)
+    x, y = np.append(whole.x, whole.x[:4]), np.append(whole.y, whole.y[:4])
+    doubled = FeaturePoints(x, y, np.append(whole.type, np.array([0, 1, 2, 3], dtype=np.uint8)))
+    for points, asked in ((doubled, None), (doubled, symmetry), (whole, symmetry)):
+        found = refine(judge, points, idle, symmetry=asked)
+        assert found.status is RefineStatus.UNCHANGED
+        assert found.points is points
+        assert_kept(judge, points, found)
+    found = refine(judge, near, idle, symmetry=symmetry)
+    assert found.status is RefineStatus.SYMMETRISED
+    assert found.points.digest == whole.digest
+    assert found.before == found.after == judged(judge, whole, found_view(judge)).verdict
+
+
+def found_view(judge: Judge) -> View:
+    return View.OUTLINE if judge.rules.sealed else View.RASTER
+
+
 def test_the_search_gets_the_rounds_alone() -> None:
     """On the raster; the outline is looked at once, in the end."""
     for name in ("random-section", "sealed-section"):

@@ -1,4 +1,5 @@
 import csv
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.report import names
 from beamopt.study.run import run_study
 from beamopt.study.table import PAPER, Outcome, comparison_markdown, table_csv, table_markdown
-from tests.validation.resume import content
+from beamopt.timing import read_times
+from tests.validation.resume import content, everything
 
 SMALL = Plan(
     iterations=2,
@@ -271,6 +273,19 @@ def test_a_refined_study_has_bounds_losses_ratios_and_times(refined) -> None:
     assert held == {*names(plan), "study.json", "runs"}
     assert "Beside the paper" not in (folder / "table.md").read_text()
     assert plan.command in (folder / "refined.md").read_text()
+
+
+def test_resuming_a_finished_study_changes_no_byte(refined, tmp_path: Path) -> None:
+    """Its times among them, which are those of the searches themselves."""
+    folder, plan, outcomes = refined
+    left = Path(shutil.copytree(folder, tmp_path / "study"))
+    before = everything(left)
+    again = run_study(left, plan, resume=True)
+    assert everything(left) == before
+    assert [one.seconds for one in again] == [one.seconds for one in outcomes]
+    assert [one.refined for one in again] == [one.refined for one in outcomes]
+    for one in outcomes:
+        assert one.seconds == read_times(left / "runs" / one.run.name / "timing.csv")["search"] > 0
 
 
 def test_the_best_refined_design_of_a_target_has_its_loss(refined) -> None:

@@ -32,7 +32,6 @@ from tests.validation.solid import drawn, three_chambers
 BETTI = "PHYSICS: (1 − 2ν) × the beam, any section (Betti)"
 PROTOTYPE = "PHYSICS: a prototype"
 ALONE = (1.0, 0.0, 0.0)
-SECONDS = 900.0
 
 
 def checks(full: bool) -> list[Check]:
@@ -145,7 +144,7 @@ def off(subject: Subject, solid: Solid, tip: FloatArray) -> float:
 
 
 def traced(solid: Solid, stops: tuple[float, ...]) -> RayResult:
-    return trace_ray(RayTask(solid, Ray(ALONE, stops), SECONDS))
+    return trace_ray(RayTask(solid, Ray(ALONE, stops)))
 
 
 def limit_rows(layers: int) -> Iterator[Row]:

@@ -24,9 +24,16 @@ def command(*arguments: str) -> list[str]:
 def content(folder: Path) -> dict[str, bytes]:
     """Every file below a folder but those that hold times or the machine."""
     return {
+        name: held for name, held in everything(folder).items() if Path(name).name not in UNLIKE
+    }
+
+
+def everything(folder: Path) -> dict[str, bytes]:
+    """Every file below a folder, times and machine included."""
+    return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name not in UNLIKE
+        if path.is_file()
     }
 
 

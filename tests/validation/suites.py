@@ -10,6 +10,7 @@ from tests.validation import (
     genotypes,
     geometry,
     material,
+    never_worse,
     published_solids,
     refinement,
     regression,
@@ -35,4 +36,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "accuracy": accuracy.checks,
     "regression": regression.checks,
     "refinement": refinement.checks,
+    "never-worse": never_worse.checks,
 }

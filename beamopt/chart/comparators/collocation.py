@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from time import perf_counter
+from time import thread_time
 from typing import Any
 from warnings import catch_warnings, simplefilter
 
@@ -53,7 +53,7 @@ class Collocation:
     warm : start from the case before, not from the rod at rest. Its values are taken on the first
         mesh: scipy only ever adds nodes, so that a mesh handed on grows from case to case.
     first_step : share of the loads that is tried first from the rod at rest.
-    seconds : that a case may take; the very first call compiles, and that counts.
+    seconds : of processor time that a case may take; the very first call compiles, and that counts.
     """
 
     nodes: int = 9
@@ -114,7 +114,7 @@ class _Case:
         return self.at_rest
 
     def attempt(self, guess: _Mesh, factor: float, seconds: float) -> Attempt[_Mesh]:
-        before, end = self.evaluations, perf_counter() + seconds
+        before, end = self.evaluations, thread_time() + seconds
         tip = self.at_rest.y[-13:, -1]
         model = under(self.model, factor, tip[:3], rotation_of(tip[3:7]))
         try:
@@ -135,7 +135,7 @@ class _Case:
         n = len(guess.y)
 
         def fun(_: FloatArray, y: FloatArray) -> FloatArray:
-            if perf_counter() > end:
+            if thread_time() > end:
                 raise _OutOfTimeError
             self.evaluations += 1
             return slopes(model, np.ascontiguousarray(y))[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from time import perf_counter
+from time import thread_time
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -42,7 +42,10 @@ class Case(Protocol[Shape]):
         ...
 
     def attempt(self, guess: Shape, factor: float, seconds: float) -> Attempt[Shape]:
-        """Solve at `factor` times the loads from a guess, in about `seconds` at most."""
+        """Solve at `factor` times the loads from a guess.
+
+        seconds : of processor time, about which it may take at most.
+        """
         ...
 
     def drawn(self, shape: Shape) -> tuple[FloatArray, FloatArray]:
@@ -69,7 +72,7 @@ def follow(
     try is `step` of the loads; steps are halved where one fails and doubled where it does not.
     That ends at limit points, or jumps over them if Newton's method finds another equilibrium.
     """
-    end = perf_counter() + seconds
+    end = thread_time() + seconds
     iterations = 0
     if guess is not None:
         first = case.attempt(guess, 1.0, seconds)
@@ -78,7 +81,7 @@ def follow(
             return Followed(first.status, first.shape, 1.0, iterations)
     shape, factor = case.unloaded(), 0.0
     while factor < 1:
-        left = end - perf_counter()
+        left = end - thread_time()
         if left <= 0:
             return Followed(RodStatus.TOO_SLOW, shape, factor, iterations)
         there = min(1.0, factor + step)
@@ -109,7 +112,8 @@ def solve_cases(
 ) -> RodSolution:
     """Follow the cases in their order, each from the one before it if that converged.
 
-    seconds : that a case may take. step : share of the loads that is tried first from rest.
+    seconds : of processor time that a case may take.
+    step : share of the loads that is tried first from rest.
     """
     n, m = len(cases), len(stations)
     tips, rotations = np.full((n, 3), np.nan), np.full((n, 3, 3), np.nan)

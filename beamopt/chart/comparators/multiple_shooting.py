@@ -49,7 +49,7 @@ class MultipleShooting:
     intervals : at most; there is at least a step in each.
     first_step : share of the loads that is tried first from the rod at rest; with all at once,
         heavy loads may lead to another equilibrium than if they grow.
-    seconds : that a case may take; the very first call compiles, and that counts.
+    seconds : of processor time that a case may take; the very first call compiles, and that counts.
     """
 
     stepper: Stepper = Stepper.RUNGE_KUTTA

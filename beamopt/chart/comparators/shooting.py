@@ -47,7 +47,7 @@ class Shooting:
     stepper : classical Runge-Kutta, or a Magnus method; resolution is the number of steps.
     first_step : share of the loads that is tried first from the rod at rest; with all at once,
         heavy loads may lead to another equilibrium than if they grow.
-    seconds : that a case may take; the very first call compiles, and that counts.
+    seconds : of processor time that a case may take; the very first call compiles, and that counts.
     """
 
     stepper: Stepper = Stepper.RUNGE_KUTTA

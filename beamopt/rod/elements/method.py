@@ -38,12 +38,14 @@ class Elements:
     Parameters
     ----------
     penalty : times the natural stiffness, the largest EI for curvatures and EI/length² for v.
-    seconds : a case may take; infinite by default.
+    most_iterations : of a case, after which no step begins; infinite by default.
+    seconds : of processor time that a case may take; infinite by default.
     estimates : whether the error is estimated with half the elements, for half the time more.
     resolutions : numbers of elements in all, from coarse to fine.
     """
 
     penalty: float = 1e8
+    most_iterations: float = np.inf
     seconds: float = np.inf
     estimates: bool = False
     resolutions: Sequence[int] = (4, 8, 16, 32, 64, 128, 256)
@@ -79,7 +81,7 @@ class Elements:
         reached: list[Reached] = []
         before: State | None = None
         for strains in rest:
-            deadline = time.perf_counter() + self.seconds
+            deadline = time.thread_time() + self.seconds
             case = mesh._replace(rest=np.ascontiguousarray(strains[owner], dtype=np.float64))
             start = at_rest(rod, case)
             if not rod.is_loaded:
@@ -95,7 +97,7 @@ class Elements:
                 if trial.status is RodStatus.CONVERGED:
                     reached.append(Reached(trial.status, trial.state, 1.0, iterations))
                     continue
-            found = follow(case, start, lead, blocks, deadline)
+            found = follow(case, start, lead, blocks, self.most_iterations, deadline)
             reached.append(found._replace(iterations=found.iterations + iterations))
         return reached
 

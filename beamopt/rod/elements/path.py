@@ -71,18 +71,25 @@ def attempt(mesh: Mesh, start: State, factor: float, target: Target, blocks: Blo
 
 
 def follow(
-    mesh: Mesh, start: State, lead: Lead, blocks: Blocks, deadline: float = np.inf
+    mesh: Mesh,
+    start: State,
+    lead: Lead,
+    blocks: Blocks,
+    most_iterations: float = np.inf,
+    deadline: float = np.inf,
 ) -> Reached:
     """From `start`, in equilibrium without loads, to all loads, in steps as long as they succeed.
 
-    deadline : of `time.perf_counter` [s].
+    No step begins after so many iterations, or after the deadline of `time.thread_time` [s].
     """
     state, factor, step, successes, iterations = start, 0.0, 1.0, 0, 0
     wrong = fault(start)
     if wrong is not None:
         return Reached(wrong, start, 0.0, 0)
     while factor < 1:
-        if time.perf_counter() > deadline:
+        if iterations >= most_iterations:
+            return Reached(RodStatus.WORK_LIMIT, state, factor, iterations)
+        if time.thread_time() > deadline:
             return Reached(RodStatus.TOO_SLOW, state, factor, iterations)
         goal = min(factor + step, 1.0)
         trial = attempt(mesh, state, goal, lead(goal), blocks)

@@ -14,6 +14,7 @@ from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of
+from tests.validation.resume import everything
 
 FILES = {*NAMES, "provenance.json"}
 
@@ -85,6 +86,17 @@ def test_what_was_too_dear_goes_on_with_more_time(tmp_path: Path) -> None:
         more = run_accuracy(question_of(NEO), 0.05, tmp_path / "a", resume=True)
     assert more.ending in (Ending.REACHED, Ending.NOT_REACHED)
     assert not set(first.asked) & set(second.asked[len(found.tried) :])
+
+
+def test_less_time_takes_nothing_back(tmp_path: Path) -> None:
+    with MadeUp(powers(10.0, 2)).instead():
+        whole = run_accuracy(question_of(NEO), 0.05, tmp_path / "a")
+    before = everything(tmp_path / "a")
+    with MadeUp(powers(10.0, 2)).instead() as rest:
+        again = run_accuracy(question_of(NEO), 0.05, tmp_path / "a", most_seconds=1e-9, resume=True)
+    assert rest.asked == []
+    assert again.ending is whole.ending is not Ending.TOO_DEAR
+    assert everything(tmp_path / "a") == before
 
 
 def test_another_accuracy_or_question_is_refused(tmp_path: Path) -> None:

@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 
 from beamopt.errors import InputError
 from femcheck.accuracy import within
-from femcheck.accuracy.ending import Ending, Within
+from femcheck.accuracy.ending import Ending, Source, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.accuracy.within import SAFETY, answer_within
 from femcheck.chart.lineup import STIFFER
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.outcome import Status
+from femcheck.mesh.gmsh_section import MeshProblem
 from femcheck.models.beam import RodOnOutline
 from femcheck.models.named import named_design
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck import made_up
@@ -204,6 +206,16 @@ def test_what_is_too_dear_is_said() -> None:
     assert found.reply is not None
 
 
+def test_nothing_is_too_dear_unless_a_budget_is_given() -> None:
+    slow = MadeUp(powers(10.0, 2), seconds=lambda model: 1e7 * model.layers**3)
+    found, _ = answered(slow.off, 0.05, made=slow)
+    quick = MadeUp(powers(10.0, 2))
+    same, _ = answered(quick.off, 0.05, made=quick)
+    assert slow.asked == quick.asked
+    assert (found.ending, found.worst) == (same.ending, same.worst)
+    assert found.ending is not Ending.TOO_DEAR
+
+
 def test_too_dear_before_there_is_an_estimate() -> None:
     """A level that only serves to compare is no excuse for what the next one takes."""
     made = MadeUp(powers(10.0, 2), seconds=lambda model: 1000.0)
@@ -249,8 +261,8 @@ def test_a_tip_that_one_model_lacks_is_not_sure(layers: int) -> None:
 @pytest.mark.parametrize("rows", [range(3), [1]], ids=["all", "one"])
 def test_what_could_not_be_computed_is_not_reached(rows: list[int]) -> None:
     """No mesh and no time say nothing of the actuator, other than a limit point."""
-    for reason in ("gmsh crashed", "time limit reached at P = 3 kPa"):
-        made = MadeUp(powers(1.0, 2), missing=lambda model: rows, reason=reason)
+    for ended in (Ended(MeshProblem.CRASHED), Ended(Status.TIME_OUT, 3.0)):
+        made = MadeUp(powers(1.0, 2), missing=lambda model: rows, ended=ended)
         found, _ = answered(made.off, 0.05, made=made)
         assert found.ending is Ending.NOT_REACHED
         assert np.isnan(found.estimate[1])
@@ -312,8 +324,25 @@ def test_the_beams_own_law_is_a_closed_form() -> None:
     found = answer_within(question_of(made_up.RIGID), 1e-9)
     assert found.ending is Ending.REACHED
     assert found.chosen == "beam"
-    assert found.worst == 0.0
+    assert (found.source, found.compared_with) == (Source.CLOSED_FORM, ())
+    assert np.isnan(found.estimate).all()
     assert len(found.tried) == 1
+
+
+def test_what_was_compared_with_what() -> None:
+    """A rod under loads with itself less tight, a solid with other solids; without two, nothing."""
+    name, design = named_design("gravity")
+    rod = answer_within(Question.of(name, design, made_up.RIGID, AT), 0.1)
+    assert (rod.source, rod.is_beam) == (Source.TIGHTER, True)
+    assert (rod.chosen, rod.compared_with) == ("beam 0.001 mm", ("beam 0.1 mm",))
+    solid, made = answered(powers(1.0, 2), 0.05)
+    assert (solid.source, solid.is_beam) == (Source.COARSER, False)
+    others = {f"wedge18 {model.resolution}" for model in made.asked} - {solid.chosen}
+    assert set(solid.compared_with) == others
+    assert len(others) >= 3
+    dear = MadeUp(powers(10.0, 2), seconds=lambda model: 1000.0)
+    found, _ = answered(dear.off, 0.05, made=dear, most_seconds=70.0)
+    assert (found.source, found.compared_with) == (Source.NOTHING, ())
 
 
 @pytest.mark.parametrize("scene", ["gravity", "tool-at-the-tip", "upright-column"])
@@ -395,7 +424,7 @@ def test_one_combination_without_pressure() -> None:
     assert found.ending is Ending.REACHED
     assert found.worst == 0.0
     assert found.reply is not None
-    assert found.reply.reasons == (FOUND,)
+    assert all(one.is_found for one in found.reply.endings)
 
 
 def test_scales_are_of_the_beam() -> None:

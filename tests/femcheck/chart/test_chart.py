@@ -13,24 +13,28 @@ import pytest
 from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.line_journal import with_digest
 from beamopt.study.pool import in_process
 from femcheck.chart import lineup, run
 from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
-from femcheck.chart.measure import Measured, key_of, made_with, measure, read, written
+from femcheck.chart.measure import Measured, is_final, key_of, made_with, measure, read, written
 from femcheck.chart.reference import Limit, Reference
 from femcheck.chart.run import CHART, Budget, run_chart
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import FOUND, Ended, NoReply
+from femcheck.continuation.outcome import Status
 from femcheck.material.fibre import Thread
 from femcheck.models.named import named_design
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND, Model, Reply
+from femcheck.models.reply import Model, Reply
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
 from tests.femcheck.check.small import SIZES
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of
+from tests.journals import flipped
 
 SOLIDS = ("wedge18", "hex27")
 FILES = {
@@ -82,8 +86,8 @@ def measured(name: str, error: float, seconds: float, rows: int = 3, lost: int =
     tips = np.zeros((rows, 3))
     tips[:, 0] = error
     tips[rows - lost :] = np.nan
-    reasons = (FOUND,) * (rows - lost) + ("buckled",) * lost
-    return Measured(name, "1", Reply(tips, reasons, 10), seconds, made_with(ABOUT))
+    endings = (FOUND,) * (rows - lost) + (Ended(Status.BUCKLED, 3.25),) * lost
+    return Measured(name, "1", Reply(tips, endings, 10), seconds, made_with(ABOUT))
 
 
 def held_against(uncertainty: float, *rows: Measured, lost: int = 0) -> Chart:
@@ -201,7 +205,7 @@ def test_what_a_chart_leaves(tmp_path: Path) -> None:
     assert text.splitlines()[0] == CHART
     rows = list(csv.DictReader(text.splitlines()))
     assert [row["family"] for row in rows] == ["wedge18"] * 6 + ["hex27"] * 3
-    assert {(row["found"], row["of"], row["status"]) for row in rows} == {("3", "3", FOUND)}
+    assert {(row["found"], row["of"], row["ended"]) for row in rows} == {("3", "3", FOUND.key)}
     layers = [3, 4, 6, 8, 12, 4, 2, 3, 4]
     errors = [5.0 * n**-4 for n in layers]
     np.testing.assert_allclose([float(row["error_mm"]) for row in rows], errors, rtol=1e-6)
@@ -332,17 +336,36 @@ def test_another_question_is_refused(tmp_path: Path) -> None:
         b'"size": "", "tips": [["a", 1, 2]], "reasons": ["converged"]}\n',
         b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
         b'"size": "", "tips": [[0, 1, 2]], "reasons": []}\n',
+        b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
+        b'"size": "", "tips": [[0, 1, 2]], "reasons": ["a text of nobody"]}\n',
+        b'{"model": "x", "family": "x", "resolution": "", "seconds": 1, "unknowns": 0, '
+        b'"size": "", "tips": [[0, 1, 2]], "endings": [["solid.NOBODY", null, ""]]}\n',
         b"\xff\xfe\n",
     ],
 )
 def test_a_damaged_journal_is_one_line(tmp_path: Path, damage: bytes) -> None:
     charted(question_of(NEO), tmp_path / "c", made(), families=["hex27"])
-    with (tmp_path / "c" / JOURNAL).open("ab") as stream:
-        stream.write(damage)
-    with pytest.raises(InputError, match="no journal of a chart"):
-        charted(question_of(NEO), tmp_path / "c", made(), resume=True)
-    with pytest.raises(InputError, match="no journal of a chart"):
-        read_chart(tmp_path / "c")
+    path = tmp_path / "c" / JOURNAL
+    whole = path.read_bytes()
+    written = with_digest(damage.decode("latin-1").rstrip("\n")).encode("latin-1") + b"\n"
+    for line in (damage, written):  # changed afterwards, or by a program that is not ours
+        path.write_bytes(whole + line)
+        said = f"line {whole.count(10) + 1}: no journal of a chart"
+        with pytest.raises(InputError, match=said):
+            charted(question_of(NEO), tmp_path / "c", made(), resume=True)
+        with pytest.raises(InputError, match=said):
+            read_chart(tmp_path / "c")
+
+
+def test_every_changed_digit_is_noticed(tmp_path: Path) -> None:
+    """Those of the design in the first line are among them."""
+    charted(question_of(NEO), tmp_path / "c", made(), families=["hex27"])
+    path = tmp_path / "c" / JOURNAL
+    first_two = b"".join(path.read_bytes().splitlines(keepends=True)[:2])
+    for damaged in flipped(first_two):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"line [12]: no journal of a chart"):
+            read_chart(tmp_path / "c")
 
 
 @pytest.mark.parametrize("head", [b"", b"{}\n", b"[]\n", b"\xff\n", b'{"schema": "other/1"}\n'])
@@ -367,7 +390,7 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
     assert [model.layers for model in first.asked] == [3, 4, 6]
     late = [row for row in chart.rows if not np.isfinite(row.measured.seconds)]
     assert len(late) == 3
-    assert all(row.measured.reply.reason.startswith("left out: expected") for row in late)
+    assert {row.measured.reply.ended.status for row in late} == {NoReply.TOO_DEAR}
     rows = list(csv.DictReader((tmp_path / "c" / "chart.csv").read_text().splitlines()))
     assert (rows[-1]["error_mm"], rows[-1]["cpu_seconds"], rows[-1]["found"]) == ("", "", "0")
     again = read_chart(tmp_path / "c")
@@ -381,6 +404,19 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
     )
     assert [(model.layers, model.size) for model in second.asked] == [(8, 2), (12, 2), (4, 0.5)]
     assert all(row.is_whole for row in whole.rows)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_no_model_is_left_out_for_its_time_unless_that_is_asked_for(tmp_path: Path) -> None:
+    """However long models take, as on a machine that is busy, the chart has all of them."""
+    slow = made(seconds=lambda model: 1e7 * model.layers**3)
+    chart = charted(question_of(NEO), tmp_path / "slow", slow, families=["wedge18"])
+    quick = made()
+    same = charted(question_of(NEO), tmp_path / "quick", quick, families=["wedge18"])
+    assert slow.asked == quick.asked
+    np.testing.assert_array_equal(
+        [row.error for row in chart.rows], [row.error for row in same.rows]
+    )
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -463,13 +499,23 @@ def test_who_is_in_a_line_up() -> None:
 def test_replies_are_written_and_read() -> None:
     """With the tips that are not there."""
     tips = np.array([[0.1, -0.0, 1e-300], [np.nan] * 3])
-    one = Measured("a", "b", Reply(tips, (FOUND, "buckled"), 7, "many"), 1.5)
+    endings = FOUND, Ended(Status.BUCKLED, 10 / 3, "somewhere")
+    one = Measured("a", "b", Reply(tips, endings, 7, "many"), 1.5)
     line = json.loads(json.dumps(written(one)))
     again = read(line)
     np.testing.assert_array_equal(again.reply.tips, tips)
     assert (again.family, again.resolution, again.seconds) == ("a", "b", 1.5)
-    assert (again.reply.reasons, again.reply.unknowns) == ((FOUND, "buckled"), 7)
+    assert again.reply.endings == endings
+    assert again.reply.unknowns == 7
     assert line["model"] == "a b"
+
+
+@pytest.mark.parametrize("status", Status)
+def test_what_was_cut_short_is_asked_again(status: Status) -> None:
+    """By a clock or a dead process, or at a work limit, which may be a larger one now."""
+    reply = Reply(AT, (FOUND, Ended(status, 3.0), FOUND))
+    cut = {Status.TIME_OUT, Status.STOPPED, Status.WORK_LIMIT}
+    assert is_final(Measured("a", "b", reply, 1.0)) is (status not in cut)
 
 
 def test_a_quick_reply_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:

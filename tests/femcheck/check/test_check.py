@@ -50,6 +50,42 @@ def test_it_holds(done: Done) -> None:
     assert all(result.status is Status.CONVERGED for result in checked.results.values())
 
 
+def test_a_verdict_that_mesh_or_penalty_could_turn_over_is_uncertain(done: Done) -> None:
+    """What was asked moves through the worst share: only near it does the mesh have a say."""
+    checked, folder = done
+    compared = checked.comparison
+    assert compared is not None
+    assert 0 < compared.left < 1e-2
+    expected = (compared.discretisation + compared.penalty_error) / np.maximum(
+        compared.displacement, 1e-2 * compared.displacement.max()
+    )
+    assert compared.left == pytest.approx(np.nanmax(expected[compared.is_loaded]))
+    for off, certain in ((-1.01, True), (-0.99, False), (0.99, False), (1.01, True)):
+        agree = compared.worst + off * compared.left
+        if agree > 0:
+            asked = replace(checked, options=replace(checked.options, agree=agree))
+            assert asked.certain is certain
+            assert ("uncertain" in verdict(asked)) is not certain
+    assert checked.certain
+    said = json.loads((folder / "summary.json").read_text())
+    assert said["verdict"]["certain"] is True
+    left = said["difference"]["worst_left_of_displacement"]
+    assert left == pytest.approx(compared.left, abs=1e-6)
+
+
+def test_of_an_element_without_a_known_order_all_that_the_mesh_changes_counts(
+    quick: Done,
+) -> None:
+    compared = quick[0].comparison
+    assert compared is not None
+    assert compared.order is None
+    coarse, moved = compared.solid("coarse", np.inf), np.maximum(compared.displacement, 1e-9)
+    change = np.linalg.norm(compared.final.tips - coarse.tips, axis=1) / moved
+    assert compared.left >= np.nanmax(change[compared.is_loaded]) > 0
+    assert quick[0].certain  # it is off by far more than both meshes differ by
+    assert not quick[0].holds
+
+
 def test_columns_and_rows(done: Done) -> None:
     _, folder = done
     rows = rows_of(folder / "compare.csv")
@@ -98,7 +134,7 @@ def test_difference_falls_as_the_penalty_rises(done: Done) -> None:
     limit, off = compared.final.tips[row], {}
     for c in (100.0, 400.0, 1600.0):
         soft = replace(solid, law=RigidSection(300.0, c))
-        state = solve_case(Case(soft, pressures, None, None, 60.0)).outcome.state
+        state = solve_case(Case(soft, pressures, None, None)).outcome.state
         assert state is not None
         off[c] = np.linalg.norm(state.tip - centroid - limit)
     for c in (2500.0, 10000.0):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,8 @@ from femcheck.check.kept import case_file, read_case, write_case
 from femcheck.check.run import check_design
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
-from tests.femcheck.check.small import here, kept_files, quick_options, small_subject
+from tests.clocks import busy, run_away
+from tests.femcheck.check.small import here, kept_files, quick_options, small_options, small_subject
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 Done = tuple[Checked, Path]
@@ -38,6 +40,68 @@ def test_two_workers(quick: Done, tmp_path: Path) -> None:
     folder = tmp_path / "small"
     check_design(small_subject(), folder, quick_options(), workers=2, pool=processes)
     assert kept_files(folder) == kept_files(quick[1])
+
+
+def test_beside_busy_processes(quick: Done, tmp_path: Path) -> None:
+    """The same bytes on a machine with other work as on a quiet one."""
+    with busy():
+        again(tmp_path / "small", resume=False)
+    assert kept_files(tmp_path / "small") == kept_files(quick[1])
+
+
+def test_no_clock_has_a_say(quick: Done, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_away(monkeypatch)
+    again(tmp_path / "small", resume=False)
+    assert kept_files(tmp_path / "small") == kept_files(quick[1])
+
+
+def test_what_a_clock_ended_is_tried_again(quick: Done, tmp_path: Path) -> None:
+    folder = tmp_path / "small"
+    late = again(folder, resume=False, seconds=1e-9)
+    assert {one.status for one in late.results.values()} == {Status.TIME_OUT}
+    again(folder)
+    assert kept_files(folder) == kept_files(quick[1])
+
+
+@pytest.mark.parametrize("iterations", [2, 3])
+def test_what_a_work_limit_ended_is_solved_again_with_more(
+    done: Done, tmp_path: Path, iterations: int
+) -> None:
+    """And so is what builds on it: with that missing it began elsewhere than it does now."""
+    folder = tmp_path / "small"
+
+    def limited(resume: bool = True, **changes: Any) -> Checked:
+        options = small_options(**changes)
+        return check_design(small_subject(), folder, options, resume=resume, pool=here)
+
+    def written() -> dict[str, int]:
+        return {file.name: file.stat().st_mtime_ns for file in (folder / "cases").iterdir()}
+
+    few = limited(resume=False, iterations=iterations)
+    assert {one.status for one in few.results.values()} == {Status.CONVERGED, Status.WORK_LIMIT}
+    spent = [one.outcome.statistics.iterations for one in few.results.values()]
+    assert max(spent) == iterations
+    assert few.comparison is not None
+    assert few.comparison.final.iterations.max() <= 2 * iterations
+    limited()
+    assert kept_files(folder) == kept_files(done[1])
+    # who asks for less work later keeps what is there
+    before = written()
+    limited(iterations=iterations)
+    assert written() == before
+    assert kept_files(folder) == kept_files(done[1])
+
+
+def test_what_ends_at_the_same_work_limit_is_not_solved_again(tmp_path: Path) -> None:
+    folder = tmp_path / "small"
+    options = small_options(iterations=1)
+    few = check_design(small_subject(), folder, options, pool=here)
+    ended = [case_file(folder / "cases", key) for key, one in few.results.items()
+             if one.status is Status.WORK_LIMIT]  # fmt: skip
+    before = [file.stat().st_mtime_ns for file in ended]
+    assert before
+    check_design(small_subject(), folder, options, resume=True, pool=here)
+    assert [file.stat().st_mtime_ns for file in ended] == before
 
 
 @pytest.mark.parametrize(

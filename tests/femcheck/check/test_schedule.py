@@ -1,12 +1,15 @@
 """The order in which cases end must not matter: each gets the same guess and the same start."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from contextlib import nullcontext
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from femcheck.check import run as check_run
 from femcheck.check import schedule as module
 from femcheck.check import work
 from femcheck.check.case import Case, CaseResult
@@ -14,6 +17,7 @@ from femcheck.check.meshes import layers_for
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.work import solve_all
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
@@ -76,11 +80,15 @@ def stages() -> list[Stage]:
 
 
 def given(
-    monkeypatch: pytest.MonkeyPatch, workers: int, seed: int, known: dict[Key, CaseResult]
+    monkeypatch: pytest.MonkeyPatch,
+    workers: int,
+    seed: int,
+    known: dict[Key, CaseResult],
+    solve: Callable[[Case], CaseResult] = solved,
 ) -> tuple[dict[Key, tuple[Any, Any]], dict[Key, CaseResult], int]:
     """What each case that is solved was given: its guess, and where it starts."""
     pool, seen = Later(seed), {}
-    schedule = Schedule(stages(), LEVELS, 1.0, dict(known))
+    schedule = Schedule(stages(), LEVELS, Limits(), dict(known))
     monkeypatch.setattr(work, "wait", pool.finish_one)
     make = schedule.case
 
@@ -91,7 +99,7 @@ def given(
         return made
 
     monkeypatch.setattr(schedule, "case", case)
-    monkeypatch.setattr(module, "solve_case", solved)
+    monkeypatch.setattr(module, "solve_case", solve)
     solve_all(schedule, lambda: nullcontext(pool), workers, lambda key, result: None)
     return seen, schedule.results, pool.most
 
@@ -123,13 +131,41 @@ def test_a_failed_case_leads_nobody_astray(monkeypatch: pytest.MonkeyPatch) -> N
     assert wanted["hard", (2, 1, 0)][0] is not None
 
 
+@pytest.mark.parametrize("status", [Status.TIME_OUT, Status.STOPPED, Status.WORK_LIMIT])
+@pytest.mark.parametrize("late", [(20.0, 0.0, 0.0), (0.0, 0.0, 50.0), (20.0, 50.0, 0.0)])
+def test_what_is_taken_over_was_solved_as_it_would_be_now(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, status: Status, late: tuple[float, ...]
+) -> None:
+    """A limit ended one case of one solid: what followed from it began elsewhere than it should."""
+
+    def limited(case: Case) -> CaseResult:
+        is_late = tuple(case.pressures.tolist()) == late and case.solid.name == "soft"
+        return CaseResult(Outcome(status, None)) if is_late else solved(case)
+
+    wanted, _, _ = given(monkeypatch, 1, 0, {})
+    before, kept, _ = given(monkeypatch, 1, 0, {}, limited)
+    assert before != wanted
+    monkeypatch.setattr(check_run, "read_case", lambda folder, key, shapes, digest: kept[key])
+    monkeypatch.setattr(check_run, "Shapes", lambda body: None)
+    schedule = Schedule(stages(), LEVELS, Limits())
+    check_run._take_kept(tmp_path, schedule)
+    assert {key: before[key] for key in schedule.results} == {
+        key: wanted[key] for key in schedule.results
+    }
+    assert all(kept[key].status is not status for key in schedule.results)
+    assert {key for key in wanted if key[0] == "other"} <= set(schedule.results)
+    assert len(schedule.results) > 27
+    again, _, _ = given(monkeypatch, 1, 0, schedule.results)
+    assert again == {key: value for key, value in wanted.items() if key not in schedule.results}
+
+
 def test_no_more_at_once_than_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     for workers in (1, 4):
         assert given(monkeypatch, workers, 3, {})[2] == workers
 
 
 def test_keys() -> None:
-    schedule = Schedule(stages(), LEVELS, 1.0)
+    schedule = Schedule(stages(), LEVELS, Limits())
     assert [node for name, node in schedule.keys if name == "hard"] == all_nodes()
     assert schedule.pressures((2, 0, 1)).tolist() == [50, 0, 20]
 

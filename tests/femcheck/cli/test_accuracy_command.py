@@ -1,5 +1,6 @@
 """`femcheck run --accuracy` as a person meets it."""
 
+import csv
 import json
 from pathlib import Path
 
@@ -38,6 +39,12 @@ def test_the_beam_answers_its_own_law(folder: Path, capsys: pytest.CaptureFixtur
         assert words in said
     summary = json.loads((folder / "checks" / "disc" / "summary.json").read_text())
     assert summary["reached"]
+    assert summary["estimate_source"] == "CLOSED_FORM"
+    assert (summary["compared_with"], summary["worst_estimate_mm"]) == ([], None)
+    rows = list(csv.DictReader((folder / "checks" / "disc" / "tips.csv").read_text().splitlines()))
+    assert {(row["estimate_mm"], row["difference_mm"]) for row in rows} == {("", "")}
+    assert "nothing was compared" in said
+    assert "0 mm" not in said.replace("0.1 mm", "").replace(" [mm]", "")
     assert asked("0.1mm") == 2
     assert "--resume goes on" in capsys.readouterr().err
     assert asked("0.1mm", "--resume") == 0
@@ -49,7 +56,9 @@ def test_a_solid_that_is_near_enough(folder: Path, capsys: pytest.CaptureFixture
     said = capsys.readouterr().out
     assert "only a solid answers neo-hookean" in said
     assert f"wedge18 {made.asked[-1].layers} layers" in said
-    assert "estimated error up to" in said
+    summary = json.loads((folder / "checks" / "disc" / "summary.json").read_text())
+    assert summary["estimate_source"] == "COARSER"
+    assert len(summary["compared_with"]) == len(made.asked) - 1
     assert said.count("tried") >= len(made.asked)
 
 

@@ -6,6 +6,7 @@ import pytest
 from beamopt.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Outcome, Status
@@ -55,6 +56,9 @@ def walk(
 ) -> Outcome:
     start = rest_state(problem.body), np.zeros(3)
     solver = changes.pop("solver", None) or direct_solver()
+    limits = changes.pop("limits", None) or Limits()
+    assert isinstance(limits, Limits)
+    changes["budget"] = limits.begin()
     return settings.walk(problem, Shapes(problem.body), start, pressures, solver, **changes)
 
 
@@ -169,11 +173,30 @@ def test_a_start_that_is_not_finite_ends_with_a_status(problem: Equilibrium) -> 
 def test_time_out(problem: Equilibrium) -> None:
     solver = direct_solver()
     rest = rest_state(problem.body)
-    assert Newton().solve(problem, rest, LOAD, solver, deadline=0.0).status is Status.TIME_OUT
-    outcome = walk(problem, LOAD, LoadSteps(seconds=0.0))
+    late = Limits(seconds=0.0)
+    tried = Newton().solve(problem, rest, LOAD, solver, late.begin())
+    assert tried.status is Status.TIME_OUT
+    outcome = walk(problem, LOAD, LoadSteps(), limits=late)
     assert outcome.status is Status.TIME_OUT
     assert outcome.state is None
     assert outcome.statistics.steps == 2  # the try at once, and one step
+
+
+def test_work_limit(problem: Equilibrium) -> None:
+    """One iteration more than is needed is enough, one less is not; it is counted, not timed."""
+    whole = walk(problem, LOAD, LoadSteps())
+    needed = whole.statistics.iterations
+    assert walk(problem, LOAD, LoadSteps(), limits=Limits(needed)).status is Status.CONVERGED
+    outcome = walk(problem, LOAD, LoadSteps(), limits=Limits(needed - 1))
+    assert outcome.status is Status.WORK_LIMIT
+    assert outcome.state is None
+    assert outcome.statistics.iterations == needed - 1
+
+
+def test_a_failed_factorisation_is_work_too(problem: Equilibrium) -> None:
+    outcome = walk(problem, LOAD, LoadSteps(), solver=Watched(fails=True), limits=Limits(3))
+    assert outcome.status is Status.WORK_LIMIT
+    assert outcome.statistics.iterations == 3
 
 
 def test_every_status_has_a_text() -> None:

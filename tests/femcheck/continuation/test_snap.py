@@ -1,5 +1,6 @@
 """What a trace makes of paths that turn, jump and fail: scripted points, no solid."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.continuation.path import PathPoint
-from femcheck.continuation.stepper import Failed, Leg, Slope
+from femcheck.continuation.stepper import Exhausted, Failed, Leg, Slope
 from femcheck.continuation.trace import PathSteps, _Trace
 
 STATE: Any = None
@@ -17,10 +18,17 @@ def point(load: float, volume: float, growth: float = 1.0, unstable: int = 0) ->
     return PathPoint(STATE, load, volume, growth, unstable)
 
 
-class Scripted:
-    """Gives one thing after the other, whatever is asked for; finds every stop that is asked at."""
+Script = Sequence[PathPoint | Failed | Exhausted]
 
-    def __init__(self, script: list[PathPoint | Failed], slope: float = 0.5) -> None:
+
+class Scripted:
+    """Gives one thing after the other, whatever is asked for; finds every stop that is asked at.
+
+    most : volume up to which the law describes the body.
+    """
+
+    def __init__(self, script: Script, slope: float = 0.5, most: float = np.inf) -> None:
+        self._most = most
         self._script = iter(script)
         self._slope = Slope(np.array([1.0 - slope, slope]), np.zeros(1))
         self.scale = np.array([100.0, 100.0])
@@ -36,14 +44,20 @@ class Scripted:
 
     def step(self, leg: Leg, length: float) -> tuple[PathPoint | Failed, Slope | None, float]:
         self.lengths.append(length)
-        return next(self._script), self._slope, length
+        given = next(self._script)
+        if isinstance(given, Exhausted):
+            raise given
+        return given, self._slope, length
+
+    def share_of_law(self, point: PathPoint) -> float:
+        return point.volume / self._most
 
     def at(self, load: float, near: PathPoint) -> PathPoint | None:
         return point(load, near.volume)
 
 
-def trace(script: list[PathPoint | Failed], stops: list[float], slope: float = 0.5) -> Any:
-    stepper: Any = Scripted(script, slope)
+def trace(script: Script, stops: list[float], slope: float = 0.5, most: float = np.inf) -> Any:
+    stepper: Any = Scripted(script, slope, most)
     done = _Trace(PathSteps(), stepper, stops, None)
     return done, done.follow()
 
@@ -79,6 +93,39 @@ def test_growth_is_that_of_the_last_end_and_not_of_a_snap() -> None:
     assert done.grown(done.volume) == pytest.approx(1.8)
 
 
+def test_a_snap_to_what_no_law_describes_is_none() -> None:
+    """The path ends at its limit point, though it is stable again beyond the law."""
+    script = [point(49.0, 130.0, 5.0), point(47.0, 140.0, -5.0, 1), point(55.0, 150.0)]
+    done, (status, critical) = trace(script, [50.0, 100.0], most=145.0)
+    assert status is Status.LIMIT_POINT
+    assert 49.0 <= critical < 50.0
+    assert done.found == [None, None]
+    assert done.snaps == []
+
+
+def test_the_load_at_which_a_law_is_left_is_closed_in() -> None:
+    """Halved until the loads differ by a hundredth, then in a straight line; no stop is beyond."""
+    script = [
+        *(point(40.0, 120.0), point(60.0, 170.0)),
+        *(point(50.0, 145.0), point(55.0, 155.0), point(52.5, 150.5), point(52.0, 149.5)),
+    ]
+    done, (status, critical) = trace(script, [60.0], most=150.0)
+    assert status is Status.BEYOND_LAW
+    assert critical == pytest.approx(52.25)
+    assert done.points[-1].load == 52.0
+    assert done.found == [None]
+    assert done.grown(done.volume) == pytest.approx(1 + 0.5)
+
+
+def test_stability_that_is_lost_before_the_law_ends_counts() -> None:
+    """Between two points the path turned, and only then left what the law describes."""
+    fallen = [point(load, volume, -5.0, 1) for load, volume in ((40, 170), (48, 145), (39, 180))]
+    script = [point(49.0, 130.0, 5.0), *fallen]
+    _, (status, critical) = trace(script, [60.0], most=150.0)
+    assert status is Status.LIMIT_POINT
+    assert critical >= 49.0
+
+
 def test_a_path_that_stays_lost_ends_at_its_limit() -> None:
     falling = [point(47.0 - k, 140.0 + 20 * k, -5.0, 1) for k in range(6)]
     done, (status, critical) = trace([point(49.0, 130.0, 5.0), *falling], [50.0])
@@ -93,11 +140,24 @@ def failed(status: Status, unstable: int | None) -> Failed:
     return Failed(status, unstable, STATE, 40.0)
 
 
-def test_a_time_out_is_no_buckling() -> None:
-    script = [point(40.0, 120.0), failed(Status.TIME_OUT, 2)]
+@pytest.mark.parametrize("limit", [Status.TIME_OUT, Status.WORK_LIMIT])
+def test_a_limit_that_is_reached_is_no_buckling(limit: Status) -> None:
+    script = [point(40.0, 120.0), Exhausted(limit)]
     _, (status, critical) = trace(script, [50.0], slope=0.01)
-    assert status is Status.TIME_OUT
+    assert status is limit
     assert critical == 40.0
+
+
+def test_a_clock_that_runs_out_behind_a_limit_point_leaves_a_snap_open() -> None:
+    """Work is the same each time, so that what it ends stays; a clock is not."""
+    fallen = [point(49.0, 130.0, 5.0), point(47.0, 140.0, -5.0, 1)]
+    for limit, wanted in (
+        (Status.TIME_OUT, Status.TIME_OUT),
+        (Status.WORK_LIMIT, Status.LIMIT_POINT),
+    ):
+        _, (status, critical) = trace([*fallen, Exhausted(limit)], [50.0, 100.0])
+        assert status is wanted
+        assert 49.0 <= critical < 50.0
 
 
 @pytest.mark.parametrize(("unstable", "slope"), [(2, 0.01), (1, 0.06)])

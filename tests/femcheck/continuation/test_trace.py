@@ -1,5 +1,6 @@
 """Paths of small bodies: limit points, what lies behind them, stops, bifurcations, every ending."""
 
+import time
 from dataclasses import replace
 from itertools import pairwise
 
@@ -15,6 +16,7 @@ from femcheck.continuation.direct import (
     SingularMatrixError,
     direct_solver,
 )
+from femcheck.continuation.limits import Limits
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.path import Path, PathPoint, summit
@@ -25,6 +27,7 @@ from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.equilibrium import Equilibrium, actuator
 from femcheck.solid.state import State
+from tests.clocks import Clock, run_away
 from tests.femcheck.inertia import needs_inertia
 from tests.femcheck.solid.tubes import tube
 
@@ -62,9 +65,11 @@ def follow(
     steps: PathSteps | None = None,
     solver: DirectSolver | None = None,
     beyond: float | None = None,
+    limits: Limits | None = None,
 ) -> Path:
-    shapes, steps = Shapes(problem.body), steps or PathSteps()
-    return steps.trace(problem, shapes, direction, stops, solver or direct_solver(), beyond)
+    shapes, steps, solver = Shapes(problem.body), steps or PathSteps(), solver or direct_solver()
+    budget = None if limits is None else limits.begin()
+    return steps.trace(problem, shapes, direction, stops, solver, beyond, budget)
 
 
 class Failing:
@@ -399,11 +404,63 @@ def test_a_path_that_is_unstable_from_rest_on_ends(soft: Equilibrium) -> None:
 
 
 def test_time_out(soft: Equilibrium) -> None:
-    path = follow(soft, [5.0], steps=PathSteps(seconds=0.0))
+    path = follow(soft, [5.0], limits=Limits(seconds=0.0))
     assert path.status is Status.TIME_OUT
     assert path.stops == (None,)
     assert path.critical == 0
     assert path.last is path.points[0]
+
+
+def test_no_clock_has_a_say_unless_it_is_asked_to(
+    soft: Equilibrium, traced: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a machine that is as busy as can be every path is the same, to the last bit."""
+    run_away(monkeypatch)
+    path = follow(soft, [5.0, 12.0, FAR], beyond=3.5)
+    assert (path.status, path.critical) == (traced.status, traced.critical)
+    assert len(path.points) == len(traced.points)
+    for one, other in zip(path.points, traced.points, strict=True):
+        assert (one.load, one.volume) == (other.load, other.volume)
+        np.testing.assert_array_equal(one.state.x, other.state.x)
+    assert path.statistics.iterations == traced.statistics.iterations
+    assert path.statistics.seconds > 1e4  # the clock did jump
+
+
+def test_times_are_of_the_processor(soft: Equilibrium, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What passes on the wall while other programs have the processor is no cost of a path."""
+    run_away(monkeypatch)
+    monkeypatch.setattr(time, "process_time", lambda: 7.0)
+    spent = follow(soft, [5.0]).statistics
+    assert spent.iterations > 0
+    times = (spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds)
+    assert times == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("readings", range(2, 60, 3))
+def test_a_clock_that_runs_out_anywhere_says_so(
+    soft: Equilibrium, traced: Path, monkeypatch: pytest.MonkeyPatch, readings: int
+) -> None:
+    """Also behind the limit point, and while that is closed in: no answer depends on a clock."""
+    monkeypatch.setattr(time, "perf_counter", Clock(readings))
+    path = follow(soft, [5.0, 12.0, FAR], beyond=3.5, limits=Limits(seconds=1.0))
+    whole = readings > traced.statistics.iterations
+    assert path.status is (traced.status if whole else Status.TIME_OUT)
+    assert path.statistics.iterations == min(readings - 1, traced.statistics.iterations)
+
+
+def test_work_limit(soft: Equilibrium, traced: Path) -> None:
+    """With every iteration that it takes a path is whole; with fewer it stops where it is."""
+    needed = traced.statistics.iterations
+    stops = [5.0, 12.0, FAR]
+    assert follow(soft, stops, beyond=3.5, limits=Limits(needed)).status is traced.status
+    path = follow(soft, stops, beyond=3.5, limits=Limits(5))
+    assert path.status is Status.WORK_LIMIT
+    assert path.statistics.iterations == 5
+    assert path.last is not None
+    assert path.critical == path.last.load > 0
+    # the end of the stable part stands, wherever behind it the work is spent
+    late = follow(soft, stops, beyond=3.5, limits=Limits(needed - 1))
+    assert (late.status, late.critical) == (traced.status, traced.critical)
 
 
 @pytest.mark.parametrize("factors", [0, 1, 4])
@@ -436,7 +493,7 @@ def test_step_too_small(soft: Equilibrium) -> None:
 
 def test_too_many_points(soft: Equilibrium) -> None:
     path = follow(soft, [FAR], steps=PathSteps(most_points=4))
-    assert path.status is Status.STEP_TOO_SMALL
+    assert path.status is Status.WORK_LIMIT
     assert len(path.points) == 4
     assert path.last is path.points[-1]
     assert path.critical == path.last.load

@@ -22,6 +22,7 @@ def test_all_is_well(capsys: pytest.CaptureFixture[str]) -> None:
         assert word in said
     assert "μ/2 (I1 − 3 − 2 ln J), μ = 100 kPa; incompressible" in said
     assert "λ3 − 1)² + G/2 (C13² + C23²) + cE/8 [(C11 − 1)²" in said  # no markup
+    assert "5.67 (uniaxial 8.02, planar 7.98, equibiaxial 5.67)" in said
     assert "is not its" not in said
 
 

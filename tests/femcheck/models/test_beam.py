@@ -5,6 +5,7 @@ import pytest
 
 from beamopt.design import Design
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.beam import TIGHTEST, ArcOnGrid, RodByMethod, RodOnOutline, on_grid
 from femcheck.models.named import named_design
 from femcheck.models.question import Question
@@ -68,7 +69,7 @@ def test_a_raster_without_material_is_a_reason() -> None:
     whole = [{"supply": 1, "center": [0, 0], "radius": 30}]
     seal = {"skin": 0, "wall": 0, "rounding": 0, "smallest_chamber": 0, "islands": "keep"}
     reply = ArcOnGrid(16, 60).reply(asked(design_of(whole, seal=seal)))
-    assert reply.reason == "the raster has too little material to bend"
+    assert reply.ended == Ended(NoReply.NOT_STIFF)
     assert np.isnan(reply.tips).all()
     assert not reply.found.any()
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 from femcheck.material.law import Law
 from femcheck.material.rigid_section import RigidSection
@@ -113,7 +114,7 @@ def test_tips_are_those_of_our_hexahedra(law: LawChoice, monkeypatch: pytest.Mon
     assert not assembled
     theirs = FELUPE.reply(asked(law))
     assert {one.name for one in assembled} == {law.law}
-    assert theirs.is_whole, theirs.reason
+    assert theirs.is_whole, str(theirs.ended)
     assert np.linalg.norm(theirs.tips[0] - [0, 0, 100]) > 0.5
     assert theirs.away(ours.tips).max() < 1e-6
     assert (theirs.unknowns, theirs.size) == (ours.unknowns, ours.size)
@@ -125,4 +126,4 @@ def test_what_is_not_found_has_a_reason() -> None:
     reply = FELUPE.reply(asked(hurried, np.array([[0.0, 0.0, 0.0], [20.0, 0.0, 0.0]])))
     assert reply.found.tolist() == [True, False]
     assert np.isnan(reply.tips[1]).all()
-    assert reply.reasons[1] == Status.TIME_OUT.ending(0.0)
+    assert reply.endings[1] == Ended(Status.TIME_OUT, 0.0)

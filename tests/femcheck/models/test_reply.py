@@ -6,25 +6,35 @@ import sys
 import numpy as np
 import pytest
 
+from beamopt.rod.status import RodStatus
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import FOUND, Ended
+from femcheck.continuation.outcome import Status
+from femcheck.mesh.gmsh_section import MeshProblem
 from femcheck.models.question import Question
-from femcheck.models.reply import FOUND, Reply, cpu_seconds, nothing
+from femcheck.models.reply import Reply, cpu_seconds, nothing
 from tests.femcheck.check.small import design_of, three_circles
 
 TIPS = np.array([[0.0, 0.0, 1.0], [0.0, 3.0, 1.0], [np.nan] * 3])
 
 
 def test_what_is_found_and_why_the_rest_is_not() -> None:
-    reply = Reply(TIPS, (FOUND, FOUND, "limit point at P = 3 kPa"))
+    limit = Ended(Status.LIMIT_POINT, 3.0)
+    reply = Reply(TIPS, (FOUND, Ended(RodStatus.CONVERGED), limit))
     assert reply.found.tolist() == [True, True, False]
     assert not reply.is_whole
-    assert reply.reason == "limit point at P = 3 kPa"
-    assert Reply(TIPS[:2], (FOUND, FOUND)).reason == FOUND
+    assert reply.ended is limit
+    assert Reply(TIPS[:2], (FOUND, FOUND)).ended == FOUND
 
 
-def test_the_commonest_reason_is_said() -> None:
-    assert Reply(TIPS, ("a", "b", "b")).reason == "b"
-    assert Reply(TIPS, (FOUND, FOUND, "b")).reason == "b"
+def test_the_commonest_status_is_said_with_its_lowest_load() -> None:
+    late, *limits = (
+        Ended(Status.TIME_OUT, 1.0),
+        Ended(Status.LIMIT_POINT, 4.0),
+        Ended(Status.LIMIT_POINT, 3.0),
+    )
+    assert Reply(TIPS, (late, *limits)).ended is limits[1]
+    assert Reply(TIPS, (FOUND, FOUND, late)).ended is late
 
 
 def test_away_is_a_length_or_nothing() -> None:
@@ -33,12 +43,12 @@ def test_away_is_a_length_or_nothing() -> None:
     assert np.isnan(away[2])
 
 
-def test_nothing_has_a_reason_a_tip() -> None:
+def test_nothing_has_an_ending_a_tip() -> None:
     question = Question.of("small", design_of(three_circles()), CheckOptions(), np.zeros((2, 3)))
-    assert nothing(question, "no mesh").reasons == ("no mesh", "no mesh")
-    assert nothing(question, ["a", "b"]).reasons == ("a", "b")
-    assert np.isnan(nothing(question, "no mesh").tips).all()
-    assert nothing(question, "no mesh").tips.shape == (2, 3)
+    crashed = Ended(MeshProblem.CRASHED, detail="exit code 3")
+    assert nothing(question, crashed).endings == (crashed, crashed)
+    assert np.isnan(nothing(question, crashed).tips).all()
+    assert nothing(question, crashed).tips.shape == (2, 3)
 
 
 def test_processes_count() -> None:

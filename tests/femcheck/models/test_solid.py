@@ -10,13 +10,13 @@ import pytest
 from beamopt.arrays import FloatArray
 from femcheck.check.case import solve_case, stopped
 from femcheck.check.options import CheckOptions
+from femcheck.continuation.ended import FOUND, Ended
 from femcheck.continuation.outcome import Outcome, Status
-from femcheck.mesh.gmsh_section import Mesher
+from femcheck.mesh.gmsh_section import Mesher, MeshProblem
 from femcheck.models import points
 from femcheck.models.beam import RodOnOutline
 from femcheck.models.named import named_design
 from femcheck.models.question import LawChoice, Question
-from femcheck.models.reply import FOUND
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck.check.small import SIZES, design_of, small_options, three_circles
@@ -44,7 +44,7 @@ def test_three_points_are_those_of_the_grid() -> None:
     whole = QUICK.reply(grid)
     alone = QUICK.reply(grid.at(grid.pressures[rows]))
     assert whole.is_whole
-    assert alone.reasons == (FOUND,) * 3
+    assert alone.endings == (FOUND,) * 3
     assert alone.away(whole.tips[rows]).max() < 2e-4
     assert (whole.unknowns, whole.size) == (alone.unknowns, alone.size)
     assert whole.size.endswith(" triangles × 2 layers of wedge18")
@@ -57,7 +57,7 @@ def test_a_process_of_its_own_says_the_same() -> None:
     """Under a material's law, whose rays and winding go to the process."""
     question = asked(NEO, np.array([[10.0, 0, 0], [0, 0, 0]]))
     here, there = QUICK.reply(question), QUICK.reply(question, workers=1)
-    assert here.reasons == there.reasons == (FOUND, FOUND)
+    assert here.endings == there.endings == (FOUND, FOUND)
     np.testing.assert_allclose(here.tips, there.tips, rtol=0, atol=1e-9)
 
 
@@ -77,8 +77,10 @@ def test_beyond_the_limit_point_there_is_a_reason() -> None:
     reply = QUICK.reply(asked(NEO, at, actuator=soft))
     assert reply.found.tolist() == [True, False, True]
     assert np.isfinite(reply.tips).all(axis=1).tolist() == [True, False, True]
-    assert reply.reason.startswith("limit point at P = 3.")
-    assert reply.reason.endswith(" kPa")
+    assert reply.ended.status is Status.LIMIT_POINT
+    assert reply.ended.load is not None
+    assert 2.85 < reply.ended.load < 3.05
+    assert reply.ended.load != float(f"{reply.ended.load:.4g}")  # no digit of it is lost
 
 
 def test_a_mixed_solid_has_more_unknowns() -> None:
@@ -92,7 +94,8 @@ def test_a_mesh_that_fails_is_a_reason(law: LawChoice) -> None:
     broken = replace(law, mesher=Mesher("no-such-gmsh"))
     reply = QUICK.reply(asked(broken, ONE))
     assert not reply.found.any()
-    assert "gmsh is not installed: no-such-gmsh" in reply.reason
+    assert reply.ended.status is MeshProblem.NO_GMSH
+    assert "no-such-gmsh" in reply.ended.detail
     assert reply.unknowns == 0
     assert np.isnan(reply.tips).all()
 
@@ -102,13 +105,13 @@ def test_a_mesher_that_crashes_is_a_reason(tmp_path: Path) -> None:
     crashing.write_text("#!/bin/sh\nexit 3\n")
     crashing.chmod(0o755)
     broken = small_options(mesher=Mesher(str(crashing)))
-    assert QUICK.reply(asked(broken, ONE)).reason == "gmsh crashed: exit code 3"
+    assert QUICK.reply(asked(broken, ONE)).ended == Ended(MeshProblem.CRASHED, None, "exit code 3")
 
 
 def test_time_runs_out() -> None:
     """In either penalty, with the load that was reached."""
     reply = QUICKEST.reply(asked(small_options(seconds=1e-9), ONE))
-    assert reply.reason.startswith("time limit reached at P = 0 kPa")
+    assert reply.ended == Ended(Status.TIME_OUT, 0.0)
     assert np.isnan(reply.tips).all()
 
 
@@ -123,7 +126,7 @@ def test_one_penalty_alone_is_no_tip(lost: float, monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(points, "solve_case", some)
     reply = QUICKEST.reply(asked(small_options(), ONE))
-    assert reply.reason.startswith(Status.STOPPED.value)
+    assert reply.ended.status is Status.STOPPED
     assert np.isnan(reply.tips).all()
 
 

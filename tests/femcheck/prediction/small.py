@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -65,11 +66,17 @@ def faked(
     levels: Sequence[float] = LEVELS,
     share: float = 0.0,
     mode: tuple[float, Sequence[float]] | None = None,
+    coarse: dict[tuple[float, float, float], tuple[Status, float]] | None = None,
+    coarse_share: float | None = None,
+    tracks: dict[tuple[float, float, float], Sequence[Sequence[float]]] | None = None,
     **changes: Any,
 ) -> Prediction:
     """A prediction of which each ray's ending is told; other rays have all their answers.
 
     share : by which the solid's tips move less than the beam's.
+    coarse : endings on the coarse mesh where they are others; every ray is followed there too.
+    coarse_share : share there, where it is another one.
+    tracks : load and the three volumes along rays, on both meshes.
     """
     subject, options = soft_subject(levels=levels), options_of(**changes)
     rays, places = rays_of(subject.pressures)
@@ -78,17 +85,29 @@ def faked(
     law = options.law_for(subject.design.actuator)
     solid = Solid("standard", section, np.array([0.0, 100.0]), "wedge18", law)  # type: ignore[arg-type]
     results = {}
-    for number, ray in enumerate(rays):
-        status, critical = endings.get(ray.direction, (Status.CONVERGED, np.nan))
+    other_share = share if coarse_share is None else coarse_share
+    cases = [
+        (mesh, number, ray, told, moved)
+        for mesh, told, moved in (
+            ("standard", endings, share),
+            ("coarse", endings | (coarse or {}), other_share),
+        )
+        for number, ray in enumerate(rays)
+    ]
+    for mesh, number, ray, told, moved in cases:
+        status, critical = told.get(ray.direction, (Status.CONVERGED, np.nan))
         stops = [load for load in ray.stops if not load >= critical]
-        answers = [_near_the_beam(subject, ray, load, share) for load in stops]
+        answers = [_near_the_beam(subject, ray, load, moved) for load in stops]
         missing = [None] * (len(ray.stops) - len(answers))
         track = np.zeros((1, 8))
+        if tracks is not None and ray.direction in tracks:
+            rows = np.array(tracks[ray.direction], dtype=float)
+            track = np.hstack([rows, np.zeros((len(rows), 4))])
         of_mode = {} if mode is None or status is not Status.BUCKLED else _mode(mode)
         last = answers[-1] if answers else None
         every = (*answers, *missing)
-        results["standard", number] = RayResult(status, critical, every, last, track, **of_mode)
-    solids = {"standard": solid}
+        results[mesh, number] = RayResult(status, critical, every, last, track, **of_mode)
+    solids = {"standard": solid, "coarse": replace(solid, name="coarse")}
     return Prediction(
         subject, options, law, None, None, solids, tuple(rays), tuple(places), results
     )

@@ -25,6 +25,7 @@ from femcheck.prediction.kept import ray_file, read_ray, write_ray
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import RayResult, trace_ray
 from femcheck.solid.winding import Wound
+from tests.clocks import busy, run_away
 from tests.femcheck.check.small import kept_files
 from tests.femcheck.prediction.small import predict, soft_subject
 
@@ -152,6 +153,32 @@ def test_a_ray_that_kills_its_process_is_the_only_one_lost(
     assert kept_files(copied) == kept_files(limited[1])
 
 
+def test_beside_busy_processes(calm: Done, tmp_path: Path) -> None:
+    """The same bytes on a machine with other work as on a quiet one."""
+    with busy():
+        predict(tmp_path / "soft", soft_subject(levels=[0, 1, 2]), agree=1.0)
+    assert kept_files(tmp_path / "soft") == kept_files(calm[1])
+
+
+def test_no_clock_has_a_say(limited: Done, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limit points that a busy machine would not come to in time, if time counted."""
+    run_away(monkeypatch)
+    predict(tmp_path / "soft")
+    assert kept_files(tmp_path / "soft") == undrawn_files(limited[1])
+
+
+def test_what_a_work_limit_ended_is_followed_again_with_more(calm: Done, tmp_path: Path) -> None:
+    folder, subject = tmp_path / "soft", soft_subject(levels=[0, 1, 2])
+    few = predict(folder, subject, agree=1.0, iterations=2)
+    assert {one.status for one in few.results.values()} == {Status.WORK_LIMIT}
+    assert few.not_computed == 26
+    before = {file.name: file.stat().st_mtime_ns for file in (folder / "cases").iterdir()}
+    predict(folder, subject, resume=True, agree=1.0, iterations=2)
+    assert before == {file.name: file.stat().st_mtime_ns for file in (folder / "cases").iterdir()}
+    predict(folder, subject, resume=True, agree=1.0)
+    assert kept_files(folder) == kept_files(calm[1])
+
+
 def test_no_time(limited: Done, tmp_path: Path) -> None:
     """27 statuses, no number; with time the same folder ends in the same bytes."""
     folder = tmp_path / "soft"
@@ -166,9 +193,13 @@ def test_no_time(limited: Done, tmp_path: Path) -> None:
         shutil.copy(file, folder / "cases" / file.name)
     (folder / "cases" / "coarse-0_0_100.npz").unlink()
     predict(folder, resume=True)
+    assert kept_files(folder) == undrawn_files(limited[1])
+
+
+def undrawn_files(folder: Path) -> dict[str, bytes]:
+    """What a prediction writes where no figure is drawn."""
     figures = {f"{name}.{kind}" for name in ("paths", "axis") for kind in ("png", "svg")}
-    whole = {name: data for name, data in kept_files(limited[1]).items() if name not in figures}
-    assert kept_files(folder) == whole
+    return {name: data for name, data in kept_files(folder).items() if name not in figures}
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,7 @@ def traced(drawing: list[dict[str, Any]], rays: list[Ray]) -> list[tuple[RayResu
     rest = np.append(solid.section.moments.centroid, 100.0)
     found = []
     for ray in rays:
-        result = trace_ray(RayTask(solid, ray, 60.0))
+        result = trace_ray(RayTask(solid, ray))
         first = result.answers[0]
         assert first is not None
         found.append((result, first.tip - rest))

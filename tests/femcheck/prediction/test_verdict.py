@@ -39,6 +39,7 @@ def sentence(found: Prediction) -> str:
         (Status.INVERTED, "turned inside out"),
         (Status.STEP_TOO_SMALL, "steps became too small"),
         (Status.LINEAR_SOLVER, "linear solver"),
+        (Status.WORK_LIMIT, "work limit"),
         (Status.TIME_OUT, "time limit"),
         (Status.STOPPED, "its process ended"),
     ],
@@ -97,6 +98,7 @@ def test_nothing_exists() -> None:
     assert "at 3.14 kPa" in said
     assert "26 of 26 combinations" in said
     assert said.endswith("workspace at 40 kPa does not exist")
+    assert "at 3.14 kPa (supply 1 alone, 3.14 kPa on the coarse mesh)" in said
 
 
 def test_nothing_exists_as_far_as_it_is_known() -> None:
@@ -138,7 +140,7 @@ def test_winding_is_told_and_not_advised_twice(
     assert sentence(found).startswith(condition)
     said = advice(found)
     assert said is not None
-    assert said.startswith("stay below 27.2 kPa in every supply")
+    assert said.startswith("stay below 18.1 kPa in every supply (27.2 kPa over a margin of 1.5")
     assert way_out in said
     calm = faked({}, wound=wound)
     assert sentence(calm).startswith(condition)
@@ -162,7 +164,8 @@ def test_all_answered(share: float, holds: bool, judged: str) -> None:
     assert judged in said
     assert f"{100 * share:.3g} %" in said
     assert "asked 5 %" in said
-    assert found.stable_box == found.largest == 40
+    assert found.stable_box == found.safe_box.pressure == found.largest == 40
+    assert found.certain
 
 
 def test_no_solid() -> None:

@@ -15,6 +15,8 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.rod.response import LinearResponse
 from femcheck.cli.application import run
+from femcheck.continuation.ended import Ended
+from femcheck.continuation.outcome import Status
 from femcheck.models.reply import Reply
 from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import LADDER
@@ -151,7 +153,7 @@ def test_rungs_that_contradict_each_other_are_not_written(
 
     def shifted(self: Any, question: Any, workers: int = 0) -> Reply:
         reply = honest(self, question, workers)
-        return Reply(reply.tips + (self.method == "elements"), reply.reasons, errors=reply.errors)
+        return Reply(reply.tips + (self.method == "elements"), reply.endings, errors=reply.errors)
 
     monkeypatch.setattr(femcheck.regression.rods.RodByMethod, "reply", shifted)
     assert run(WRITE) == 1
@@ -272,9 +274,9 @@ def test_a_time_limit_is_no_move(
 
     def late(self: Any, question: Any, workers: int = 0) -> Reply:
         reply = honest(self, question, workers)
-        tips, reasons = reply.tips.copy(), list(reply.reasons)
-        tips[3], reasons[3] = np.nan, "time limit reached at P = 3 kPa"
-        return Reply(tips, tuple(reasons))
+        tips, endings = reply.tips.copy(), list(reply.endings)
+        tips[3], endings[3] = np.nan, Ended(Status.TIME_OUT, 3.0)
+        return Reply(tips, tuple(endings))
 
     monkeypatch.setattr(femcheck.regression.rods.RodOnOutline, "reply", late)
     capsys.readouterr()

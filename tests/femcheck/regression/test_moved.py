@@ -5,12 +5,17 @@ import math
 import numpy as np
 import pytest
 
+from beamopt.rod.status import RodStatus
+from femcheck.continuation.ended import FOUND, Ended, NoReply
+from femcheck.continuation.outcome import Status
 from femcheck.models.reply import Reply
 from femcheck.regression.agreement import contradictions
-from femcheck.regression.held import columns, of_reply, split
+from femcheck.regression.held import columns, of_reply
 from femcheck.regression.measure import Measured
 from femcheck.regression.moved import compare, lowest
 from tests.femcheck.regression.small import held
+
+LIMIT, BUCKLED = Ended(Status.LIMIT_POINT, 22.61), Ended(Status.BUCKLED)
 
 
 def test_a_tip_within_its_tolerance_has_not_moved() -> None:
@@ -24,9 +29,10 @@ def test_a_tip_within_its_tolerance_has_not_moved() -> None:
 @pytest.mark.parametrize(
     ("was", "now"),
     [
-        ((1.0,), "limit point"),
-        ("limit point", (1.0,)),
-        ("limit point", "buckled"),
+        ((1.0,), LIMIT),
+        (LIMIT, (1.0,)),
+        (LIMIT, BUCKLED),
+        (LIMIT, Ended(RodStatus.LIMIT_POINT)),
         ((1.0,), (1.0, 2.0)),
         ((1.0,), (math.nan,)),
     ],
@@ -37,8 +43,9 @@ def test_an_equilibrium_that_came_or_went_has_moved(was: object, now: object) ->
     assert "held: " in str(moved)
 
 
-def test_the_same_words_have_not_moved() -> None:
-    assert compare("d", [held({"a": "buckled"})], Measured((held({"a": "buckled"}),))) == []
+def test_the_same_status_has_not_moved_whatever_the_load() -> None:
+    now = Measured((held({"a": Ended(Status.BUCKLED, 3.0, "said otherwise")}),))
+    assert compare("d", [held({"a": BUCKLED})], now) == []
 
 
 def test_rows_and_rungs_that_came_or_went_have_moved() -> None:
@@ -50,7 +57,7 @@ def test_rows_and_rungs_that_came_or_went_have_moved() -> None:
         ("outline", "n", None, (0.0,)),
         ("beam", "b", (1.0,), None),
         ("beam", "z", None, (1.0,)),
-        ("gmsh", "c", (1.0,), "it died"),
+        ("gmsh", "c", (1.0,), Ended(NoReply.BROKEN, detail="it died")),
     ]
 
 
@@ -67,24 +74,22 @@ def test_the_lowest_rung_is_named_and_there_what_moved_most() -> None:
 
 
 def test_digits_end_a_little_below_the_tolerance() -> None:
-    written = held({"a": (1 / 3, -1e-9), "b": "buckled"}, tolerance=0.00234).written()
-    assert written.rows == {"a": (0.33333, 0.0), "b": "buckled"}
+    written = held({"a": (1 / 3, -1e-9), "b": BUCKLED}, tolerance=0.00234).written()
+    assert written.rows == {"a": (0.33333, 0.0), "b": BUCKLED}
     assert written.tolerance == 0.0023
     assert str(written.rows["a"]) == "(0.33333, 0.0)"
     assert held({"a": (1 / 3,)}, tolerance=5.0).written().rows == {"a": (0.33,)}
 
 
-def test_reasons_are_split_into_words_and_pressure() -> None:
-    assert split("limit point at P = 22.61 kPa") == ("limit point", 22.61)
-    assert split("no mesh") == ("no mesh", None)
-    reply = Reply(np.array([[0, 0, 1.0], [np.nan] * 3]), ("converged", "buckled at P = 3 kPa"))
+def test_a_reply_is_a_row_a_combination() -> None:
+    reply = Reply(np.array([[0, 0, 1.0], [np.nan] * 3]), (FOUND, BUCKLED))
     rows = of_reply(np.array([[0, 5.0, 0], [1e-3, 0, 100]]), reply)
-    assert rows == {"0, 5, 0 kPa": (0.0, 0.0, 1.0), "0.001, 0, 100 kPa": "buckled"}
+    assert rows == {"0, 5, 0 kPa": (0.0, 0.0, 1.0), "0.001, 0, 100 kPa": BUCKLED}
 
 
-def test_numbers_that_are_none_are_said_in_words() -> None:
+def test_numbers_that_are_none_have_a_status() -> None:
     found = columns(["a", "b"], np.array([[1.0, np.nan], [1.0, 2.0]]))
-    assert found == {"a": "not a number", "b": (1.0, 2.0)}
+    assert found == {"a": Ended(NoReply.NOT_FINITE), "b": (1.0, 2.0)}
 
 
 def test_rungs_that_say_the_same_are_held_against_each_other() -> None:
@@ -92,7 +97,7 @@ def test_rungs_that_say_the_same_are_held_against_each_other() -> None:
     assert contradictions([one, held({"a": (1.19,)}, "rod, elements")], 60) == []
     (said,) = contradictions([one, held({"a": (1.21,)}, "rod, elements")], 60)
     assert said == "rod, modes and rod, elements: tips at a: 0.21 mm apart (allowed 0.2)"
-    (said,) = contradictions([one, held({"a": "buckled"}, "rod, elements")], 60)
+    (said,) = contradictions([one, held({"a": BUCKLED}, "rod, elements")], 60)
     assert said.endswith("no numbers")
     areas = held({"material": (10.0,), "supply 1": (2.0,)}, "kept mesh", quantity="areas")
     volumes = held({"material": (600.0,), "supply 1": (150.0,)}, "solid at rest")
@@ -102,5 +107,5 @@ def test_rungs_that_say_the_same_are_held_against_each_other() -> None:
 
 
 def test_what_depends_on_the_clock_is_not_held() -> None:
-    (said,) = contradictions([held({"a": "time limit reached"})], 60)
+    (said,) = contradictions([held({"a": Ended(Status.TIME_OUT)})], 60)
     assert said == "beam: tips at a: time limit reached"

@@ -84,7 +84,9 @@ def hostile_check(folder: Path, to: Path) -> Path:
     quoted = '"' + HOSTILE.replace('"', '""') + '"'
     lines = table.read_text().splitlines()
     cells = lines[5].split(",")  # of a combination that then has no answer
-    lines[5] = ",".join([*cells[:6], "", "", "", "", *cells[10:-1], quoted])
+    lines[5] = ",".join(
+        [*cells[:6], "", "", "", "", *cells[10:-3], quoted, "solid.STOPPED", cells[-1]]
+    )
     table.write_text("\n".join(lines) + "\n")
     return to
 

@@ -8,6 +8,7 @@ import pytest
 
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from femcheck.accuracy.ending import Source
 from femcheck.accuracy.run import run_accuracy
 from femcheck.check.options import CheckOptions
 from femcheck.models.question import Question
@@ -40,7 +41,7 @@ def not_reached(answered: Path, to: Path) -> Path:
     file = to / "tips.csv"
     lines = file.read_text().splitlines()
     cells = lines[9].split(",")
-    lines[9] = ",".join([*cells[:3], *8 * [""], "limit point at P = 3 kPa"])
+    lines[9] = ",".join([*cells[:3], *8 * [""], "limit point at P = 3 kPa", "solid.LIMIT_POINT"])
     file.write_text("\n".join(lines) + "\n")
     return to
 
@@ -54,7 +55,8 @@ def test_an_answer_is_found_and_read(answered: Path) -> None:
 
 def test_it_says_what_was_found(answered: Path) -> None:
     found = Page(report_page([answered]))
-    for said in ("accuracy reached", "0.1 mm", "rigid-section", "What was tried", "27 of 27"):
+    words = ("accuracy reached", "0.1 mm", "rigid-section", "What was tried", "27 of 27")
+    for said in (*words, Source.CLOSED_FORM.value):
         assert said in found.text
     rows = [
         attrs["data-row"] for tag, attrs in found.elements if tag == "tr" and "data-row" in attrs

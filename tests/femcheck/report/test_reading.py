@@ -1,6 +1,7 @@
 """Folders of results read back; what is damaged is said in one line, by file and key."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +9,13 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
+from beamopt.files import csv_text
+from femcheck.report.content import read_table
 from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
 from femcheck.report.solid_run import read_solid_run
+from femcheck.report.wording import badge_of
 from tests.femcheck.report.folders import change_json, copied, figure_folder
 
 
@@ -38,7 +42,34 @@ def test_a_prediction_is_read(predicted: Path) -> None:
     assert 0 < missing.sum() < 27
     assert all(np.isfinite(found.ends_at[missing]))
     row = int(np.flatnonzero(missing)[0])
-    assert found.ending(row) == f"{found.statuses[row]} at P = {found.ends_at[row]:.4g} kPa"
+    ended = found.endings[row]
+    assert ended is not None
+    assert ended.status.is_physical
+    assert found.ending(row) == str(replace(ended, load=found.ends_at[row]))
+
+
+def test_a_verdict_that_is_not_certain_has_a_badge_that_says_so(
+    checked: Path, predicted: Path, tmp_path: Path
+) -> None:
+    """Meshes of two layers and of one do not agree on limits. An old folder does not say."""
+    run = read_solid_run(predicted)
+    assert not run.is_certain
+    assert run.summary.number("meshes.largest_ratio") > 1.1
+    sure = read_solid_run(checked)
+    assert sure.is_certain
+    folder = copied(checked, tmp_path / "unsure")
+    change_json(folder / "summary.json", lambda data: data["verdict"].update(certain=False))
+    unsure = read_solid_run(folder)
+    assert not unsure.is_certain
+    assert badge_of(unsure).text == f"{badge_of(sure).text}, uncertain"
+    change_json(folder / "summary.json", lambda data: data["verdict"].pop("certain"))
+    assert read_solid_run(folder).is_certain
+
+
+def test_text_that_was_defused_is_shown_as_it_was(tmp_path: Path) -> None:
+    texts = ("=1+1", "'-x", "-1.5", "@a")
+    (tmp_path / "a.csv").write_text(csv_text("a,b,c,d", [texts]), encoding="utf-8")
+    assert read_table(tmp_path / "a.csv").rows == (texts,)
 
 
 def test_folders_are_found(checked: Path, predicted: Path, tmp_path: Path) -> None:
@@ -108,13 +139,17 @@ DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
     "design cut": (cut("design.json"), r"design\.json"),
     "provenance": (replaced("provenance.json", '"machine"', '"engine"'), r"machine: must be given"),
     "table gone": (removed("table.csv"), r"table\.csv: no such file"),
-    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 19 cells|rows = )"),
-    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 18: must hold 19 cells"),
+    "table cut": (cut("table.csv"), r"table\.csv: (line \d+ = \d+: must hold 21 cells|rows = )"),
+    "cell gone": (replaced("table.csv", ",converged", ""), r"line 2 = 20: must hold 21 cells"),
     "row gone": (
         lambda folder: (folder / "table.csv").write_text(
             "".join((folder / "table.csv").read_text().splitlines(True)[:-1])
         ),
         r"table\.csv: rows = 26: must hold 27 combinations",
+    ),
+    "status": (
+        replaced("table.csv", ",solid.CONVERGED", ",solid.SOLVED"),
+        r"combination 1, ended = .*: no status is called solid\.SOLVED",
     ),
     "no column": (replaced("table.csv", "beam_y", "beam_q"), r"table\.csv: beam_y: no column"),
     "no number": (replaced("table.csv", "0,0,20,", "0,0,20,x"), r"line 3, beam_x = 'x"),

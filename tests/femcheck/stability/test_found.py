@@ -106,7 +106,7 @@ def test_the_reading_tells_what_contradicts(found: list[AxisFound]) -> None:
     text = " ".join(reading(found).split())
     assert "15 cases on 2 panels. They end as: " in text
     assert "15 of 15 cells say what the line" in text
-    assert "| length: 90 | 9 | 10 | -10.0% | a formula |" in text
+    assert "| length: 90 | 9 | 10 | -10.0% |" in text
     assert "| 60 | limit point at 6 kPa, after snaps at 1.5 kPa | 3 × | nowhere |" in text
     assert "| 130 | not up to 12 kPa | | 7.5…12 kPa (the end) |" in text
     wrong = with_cell(found[0].rows[0], 2, Ending.STABLE)

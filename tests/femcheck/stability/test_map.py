@@ -22,6 +22,7 @@ from tests.femcheck.stability.small import (
     told_cell,
     told_row,
 )
+from tests.journals import flipped
 
 pytestmark = pytest.mark.usefixtures("told")
 
@@ -52,14 +53,14 @@ def test_times_stand_in_one_file(whole: Path) -> None:
 
 
 def test_limits(whole: Path) -> None:
-    """Row by row: found, on the finer mesh, by others."""
+    """Row by row: found, on the finer mesh, in closed form."""
     head, *lines = (line.split(",") for line in (whole / "limits.csv").read_text().splitlines())
     rows = {line[1]: dict(zip(head, line, strict=True)) for line in lines}
     assert rows["60"]["limit_kPa"] == rows["60"]["finer_kPa"] == "6.0"
     assert rows["60"]["coarse_over_finer"] == "1.0"
     assert rows["60"]["snaps_kPa"] == "1.5"
-    assert rows["90"]["published_kPa"] == "10"
-    assert rows["90"]["over_published"] == "0.9"
+    assert rows["90"]["exact_kPa"] == "10.0"
+    assert rows["90"]["over_exact"] == "0.9"
     assert rows["130"]["limit_kPa"] == ""
     assert rows["130"]["status"] == "stable equilibrium"
 
@@ -200,5 +201,10 @@ def test_a_line_says_all_there_is_to_know(tmp_path: Path) -> None:
     journal = Journal(tmp_path / "journal.jsonl", axes)
     for key, result in results.items():
         journal.add(axis, key, result)
-    read = Journal(tmp_path / "journal.jsonl", axes).results
+    path = tmp_path / "journal.jsonl"
+    read = Journal(path, axes).results
     assert repr(read) == repr(results)  # not a number is not equal to itself
+    for damaged in flipped(path.read_bytes()):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"journal\.jsonl: line [1-4]"):
+            Journal(path, axes)

@@ -98,6 +98,17 @@ def test_a_failing_case_spoils_no_other() -> None:
     assert METHOD.solve(rod, rest[:0], 8).tips.shape == (0, 3)
 
 
+def test_work_limit() -> None:
+    """Counted, and no more than a step's iterations beyond it."""
+    rod = cantilever(10.0)
+    needed = int(solved(rod, 8, Elements()).iterations[0])
+    assert solved(rod, 8, Elements(most_iterations=needed)).status == (RodStatus.CONVERGED,)
+    found = solved(rod, 8, Elements(most_iterations=1))
+    assert found.status == (RodStatus.WORK_LIMIT,)
+    assert 1 <= found.iterations[0] < needed
+    assert np.isnan(found.tips).all()
+
+
 def test_too_slow() -> None:
     found = solved(cantilever(10.0), 8, Elements(seconds=0.0))
     assert found.status == (RodStatus.TOO_SLOW,)

@@ -1,0 +1,67 @@
+"""Results on disk as arrays, with a digest of the whole file: what was damaged is never read."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import logging
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from beamopt.files import write_atomic
+
+__all__ = ["read_arrays", "write_arrays"]
+
+T = TypeVar("T")
+LOG = logging.getLogger(__name__)
+MARK = b"\nblake2b-16 "  # before the digest; files of earlier versions end without
+
+DAMAGED = (
+    *(OSError, ValueError, KeyError, EOFError),
+    # headers with a bit turned over: encrypted, compressed, of no size
+    *(zipfile.BadZipFile, RuntimeError, SyntaxError, zlib.error, struct.error),
+)
+
+
+def write_arrays(file: Path, arrays: Mapping[str, Any]) -> None:
+    """Write arrays by name."""
+    stream = io.BytesIO()
+    np.savez(stream, allow_pickle=False, **arrays)
+    content = stream.getvalue()
+    write_atomic(file, content + MARK + _digest(content))
+
+
+def read_arrays(file: Path, convert: Callable[[Any], T | None]) -> T | None:
+    """What `convert` makes of the arrays in a file; None where there is no file.
+
+    A file that is damaged is None too, and logged: its result is to be computed again.
+    """
+    try:
+        content, mark, digest = _parts(file.read_bytes())
+        if mark and digest != _digest(content):
+            raise ValueError("the digest is of another content")
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+            return convert(arrays)
+    except FileNotFoundError:
+        return None
+    except DAMAGED as error:
+        LOG.warning("%s can not be read, its result is computed again: %s", file, error)
+        return None
+
+
+def _parts(content: bytes) -> tuple[bytes, bytes, bytes]:
+    """Arrays, mark and digest; the last two are empty in files of earlier versions."""
+    place = len(content) - len(MARK) - len(_digest(b""))
+    if place < 0 or content[place : place + len(MARK)] != MARK:
+        return content, b"", b""
+    return content[:place], MARK, content[place + len(MARK) :]
+
+
+def _digest(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=16).hexdigest().encode()
