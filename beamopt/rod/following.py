@@ -21,6 +21,7 @@ SMALLEST_STEP = 2e-4  # of the full load
 LARGEST_JUMP = 0.5  # rad that the iteration may turn the tip by beyond what was predicted
 MOST_STEPS = 400
 SAME_STATE = 1e-4  # rad
+SAME_WAY = 0.5  # cosine between the path's tangents at both ends of a step, at least
 SOFT = 0.15  # of its stiffness at rest: a mode with less than this is critical
 AT_WORK = 0.02  # cosine between critical mode and the load's change: more than this is work
 
@@ -45,7 +46,7 @@ class Follower:
         """
         now, step, total = 0.0, FIRST_STEP, 0
         here, slope = np.zeros_like(unknowns), np.zeros_like(unknowns)
-        beyond = FOUND
+        beyond, direction = FOUND, self._onwards(0.0, here)
         for _ in range(MOST_STEPS):
             after = min(1.0, now + step)
             predicted = here + (after - now) * slope
@@ -55,8 +56,11 @@ class Follower:
             jump = largest_turn(self.rod, self.at, unknowns - predicted)
             if ended == FOUND and now > 0.0 and not self._leads_back(unknowns, now, here):
                 ended = UNSTABLE  # it snapped: shallow arches hardly turn
+            onwards = self._onwards(after, unknowns) if ended == FOUND else direction
+            if ended == FOUND and jump < LARGEST_JUMP and onwards @ direction < SAME_WAY:
+                ended = UNSTABLE  # the mirror image of where a bent path leads, or beyond its bend
             if ended == FOUND and jump < LARGEST_JUMP:
-                slope = (unknowns - here) / (after - now)
+                slope, direction = (unknowns - here) / (after - now), onwards
                 here[:], now = unknowns, after
                 step *= 2.0 if count <= 5 else 1.0
                 if now == 1.0:
@@ -73,6 +77,19 @@ class Follower:
     def _iterate(self, factor: float, unknowns: FloatArray) -> tuple[int, int]:
         held = (self.rod, self.at, self.rest, self.start, self.turn, self.conservative)
         return newton(*held, False, CLOSE, factor, unknowns, self.shape)
+
+    def _onwards(self, factor: float, unknowns: FloatArray) -> FloatArray:
+        """Unit tangent of the path in (angles, share of the load); the load alone if singular."""
+        moving = self.at.basis.shape[1] * len(self.rod.free) + len(self.rod.hinge)
+        load = self._residual(factor + SMALLEST_STEP, unknowns) - self._residual(factor, unknowns)
+        tangent = self._tangent(factor, unknowns)
+        try:
+            change = -np.linalg.solve(tangent, load / SMALLEST_STEP)[:moving]
+        except np.linalg.LinAlgError:
+            return np.append(np.zeros(moving), 1.0)
+        change[: moving - len(self.rod.hinge)] *= self.at.step.sum()
+        direction = np.append(change, 1.0)
+        return np.asarray(direction / np.linalg.norm(direction))
 
     def _leads_back(self, unknowns: FloatArray, before: float, there: FloatArray) -> bool:
         """Whether the iteration from a state finds the equilibrium at the load before it."""

@@ -1,9 +1,10 @@
-"""Paths of equilibria as the load grows and falls, past limit points: arc-length continuation."""
+"""Paths of equilibria as the load grows and falls, by arc-length continuation."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +17,18 @@ from beamopt.rod.rod import Rod
 from beamopt.rod.shape import empty_shape
 from beamopt.rod.tangent import tangent_into
 
-__all__ = ["LoadPath", "PathStatus", "follow_path"]
+__all__ = ["CriticalKind", "CriticalPoint", "LoadPath", "PathStatus", "Stretch", "follow_path"]
 
 CLOSE = 1e-9  # of the step, where an iteration has arrived
+ROUNDING = 1e-11  # rad, or share of the load; near a critical point no iteration comes nearer
 AT_REST = 1e-6  # of the length, or rad, that a held tip may be off at rest
 MOST_ITERATIONS = 12
 EASY, HARD = 4, 7  # iterations that make the next step longer or shorter
-SMALLEST, LARGEST = 1e-4, 8.0  # steps, as multiples of the first one
+SMALLEST, LARGEST = 1e-5, 8.0  # steps, as multiples of the first one
+DRIFT = 0.5  # of a step, that its equilibrium may be off the tangent that led there
+BEND = 0.8  # cosine between successive tangents at least
+HALVINGS = 20  # of a step in which a critical point lies
+MEET = 1e-3  # of the step, how near the equilibria on both sides of a critical point come
 
 
 class PathStatus(Enum):
@@ -33,15 +39,53 @@ class PathStatus(Enum):
     STEPS_TOO_SMALL = "the steps became too small"
 
 
+class CriticalKind(Enum):
+    """What happens where the tangent is singular; the value is the text shown to people."""
+
+    LIMIT = "the load has an extremum along the path"
+    BIFURCATION = "another branch crosses the path"
+
+
+@dataclass(frozen=True, eq=False)
+class CriticalPoint:
+    """A point of a path where the tangent by the rod's shape is singular.
+
+    factor : of the loads. ends : (S, 3) the ends of the segments [mm].
+    after : number of the path's point before it.
+    directions : unstable directions beyond it less those before it.
+    """
+
+    kind: CriticalKind
+    factor: float
+    ends: FloatArray
+    after: int
+    directions: int
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Points `first` to `last` of a path, between critical points.
+
+    unstable : directions in which the potential falls; 0 is stable.
+    bifurcations : that lie between rest and here. Up to the first one the path is the only one
+        from rest; beyond it is the branch that goes straight on, and others leave it.
+    """
+
+    first: int
+    last: int
+    unstable: int
+    bifurcations: int
+
+
 @dataclass(frozen=True, eq=False)
 class LoadPath:
     """Equilibria along a path, the unloaded one first.
 
     factors : (m,) of the loads. tips : (m, 3) [mm]. ends : (m, S, 3) ends of the segments [mm].
     stable : (m,) whether each is a minimum of the potential (see `newton.is_stable`).
-    limits : factors at which the load has a maximum or minimum along the path, by the parabola
-        through the three points there.
-    limit_ends : (k, S, 3) the ends of the segments there.
+    unstable : (m,) directions in which the potential falls; of loads without a potential 1 where
+        the determinant has not the sign that it has at rest, else 0.
+    critical : limit points and bifurcations in their order.
     """
 
     status: PathStatus
@@ -49,8 +93,43 @@ class LoadPath:
     tips: FloatArray
     ends: FloatArray
     stable: NDArray[np.bool_]
-    limits: FloatArray
-    limit_ends: FloatArray
+    unstable: NDArray[np.int64]
+    critical: tuple[CriticalPoint, ...]
+
+    @property
+    def limits(self) -> FloatArray:
+        """(k,) factors at which the load has a maximum or minimum along the path."""
+        return np.array([one.factor for one in self._limits])
+
+    @property
+    def limit_ends(self) -> FloatArray:
+        """(k, S, 3) the ends of the segments there [mm]."""
+        return np.array([one.ends for one in self._limits]).reshape(-1, *self.ends.shape[1:])
+
+    @property
+    def bifurcations(self) -> FloatArray:
+        """(k,) factors at which other branches cross the path."""
+        found = [one.factor for one in self.critical if one.kind is CriticalKind.BIFURCATION]
+        return np.array(found)
+
+    @property
+    def stretches(self) -> tuple[Stretch, ...]:
+        """The path from one critical point to the next."""
+        last = len(self.factors) - 1
+        cuts = [-1, *(one.after for one in self.critical if one.after < last), last]
+        crossed = [
+            sum(one.kind is CriticalKind.BIFURCATION for one in self.critical if one.after < end)
+            for end in cuts[1:]
+        ]
+        return tuple(
+            Stretch(before + 1, end, int(self.unstable[end]), count)
+            for (before, end), count in zip(pairwise(cuts), crossed, strict=True)
+            if end > before
+        )
+
+    @property
+    def _limits(self) -> list[CriticalPoint]:
+        return [one for one in self.critical if one.kind is CriticalKind.LIMIT]
 
 
 def follow_path(
@@ -61,10 +140,14 @@ def follow_path(
     steps: int = 400,
     factor: float = 1.0,
 ) -> LoadPath:
-    """Follow the equilibria of a rod from rest, through limit points.
+    """Follow the equilibria of a rod from rest, through limit points and bifurcations.
 
     Pseudo-arc-length continuation (Keller 1977) in the modes' amplitudes, scaled to angles, and the
-    load factor. A held tip has to be held where it is without loads.
+    load factor. A step counts only if its equilibrium is near the tangent that led there and the
+    path hardly turns. Where the number of unstable directions or the determinant's sign changes the
+    step is halved until the two sides meet, at a critical point, or turn out to be two paths; then
+    the one from rest is followed. Through a bifurcation the path goes straight on. A held tip has
+    to be held where it is without loads.
 
     Parameters
     ----------
@@ -76,37 +159,134 @@ def follow_path(
     ValueError : a tip that is held elsewhere than where it is without loads.
     """
     system = _System(rod, modes)
-    here, at = np.zeros(system.size), 0.0
-    if np.abs(system.residual(here, at)).max() > AT_REST * rod.length:
+    here = np.zeros(system.size)
+    if np.abs(system.residual(here, 0.0)).max() > AT_REST * rod.length:
         raise ValueError("tip: must be held where it is without loads")
-    points = [system.point(here, at)]
-    direction = system.direction(here, at, None)
+    points, critical = [system.state(here, 0.0, None)], list[CriticalPoint]()
     length, status = step, PathStatus.ENOUGH_STEPS
-    for _ in range(steps):
-        found = system.correct(here, at, direction, length)
-        if found is None:
+    while len(points) <= steps:
+        taken = _step(system, points[-1], length)
+        if taken is None:
             length /= 2
             if length < SMALLEST * step:
                 status = PathStatus.STEPS_TOO_SMALL
                 break
             continue
-        last = np.append(here, at)
-        here, at, count = found
-        if at >= factor:  # back to where it was asked for
-            share = (factor - last[-1]) / (at - last[-1])
-            here = system.settle(last[:-1] + share * (here - last[:-1]), factor)
-            points.append(system.point(here, factor))
+        if taken.event is not None:
+            critical.append(replace(taken.event, after=len(points) - 1))
+        if taken.point.at >= factor:  # back to where it was asked for
+            points.append(system.settled(points[-1], taken.point, factor))
+            ahead = len(points) - 2  # what lies in the last step, beyond the load asked for
+            critical = [one for one in critical if one.factor <= factor or one.after < ahead]
             status = PathStatus.FULL_LOAD
             break
-        points.append(system.point(here, at))
-        direction = system.direction(here, at, direction)
-        if count <= EASY:
+        points.append(taken.point)
+        if taken.length < length:
+            length = max(taken.length, 2 * SMALLEST * step)
+        elif taken.point.iterations <= EASY:
             length = min(1.5 * length, LARGEST * step)
-        elif count >= HARD:
+        elif taken.point.iterations >= HARD:
             length /= 1.5
-    factors, tips, ends, stable = (np.array(column) for column in zip(*points, strict=True))
-    limits, limit_ends = _extremes(factors, ends)
-    return LoadPath(status, factors, tips, ends, stable.astype(bool), limits, limit_ends)
+    return LoadPath(
+        status,
+        np.array([one.at for one in points]),
+        np.array([one.ends[-1] for one in points]),
+        np.array([one.ends for one in points]),
+        np.array([one.stable for one in points]),
+        np.array([one.unstable for one in points]),
+        tuple(critical),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """An equilibrium on a path.
+
+    here : (n,) unknowns, scaled. at : factor of the loads. direction : (n + 1,) unit tangent,
+    onwards. unstable : see `LoadPath`. sign : of the determinant of the tangent bordered by load
+    and direction, which changes at bifurcations and not at limits. iterations : that it took.
+    """
+
+    here: FloatArray
+    at: float
+    direction: FloatArray
+    ends: FloatArray
+    stable: bool
+    unstable: int
+    sign: float
+    iterations: int
+
+    @property
+    def place(self) -> FloatArray:
+        """(n + 1,) unknowns and factor."""
+        return np.append(self.here, self.at)
+
+    def turns(self, other: _State) -> bool:
+        """Whether the load has an extremum between here and there."""
+        return bool(self.direction[-1] * other.direction[-1] < 0)
+
+    def parted(self, other: _State) -> bool:
+        """Whether there is more between here and there than a limit point or nothing."""
+        change = abs(other.unstable - self.unstable)
+        return self.sign * other.sign < 0 or change != self.turns(other)
+
+
+@dataclass(frozen=True, eq=False)
+class _Taken:
+    """A step that counts: where it leads, how long it is, and the critical point that it passes."""
+
+    point: _State
+    length: float
+    event: CriticalPoint | None = None
+
+
+def _step(system: _System, here: _State, length: float) -> _Taken | None:
+    """A step of a length, or a shorter one up to where the path turns; None where none is found."""
+    ahead = system.ahead(here, length)
+    if ahead is None:
+        return None
+    if not here.parted(ahead):
+        event = _limit(system, here, ahead, length) if here.turns(ahead) else None
+        return _Taken(ahead, length, event)
+    low, high, near, far = 0.0, length, here, ahead
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        found = system.ahead(here, middle)
+        if found is None:
+            break
+        if here.parted(found):
+            high, far = middle, found
+        else:
+            low, near = middle, found
+    apart = np.linalg.norm(far.place - near.place) > MEET * length
+    if apart or near.direction @ far.direction < BEND:  # two paths that do not meet: the near one
+        event = _limit(system, here, near, low) if low > 0 and here.turns(near) else None
+        return _Taken(near, low, event) if low > 0 else None
+    limit = here.turns(far) and here.sign * far.sign > 0
+    kind = CriticalKind.LIMIT if limit else CriticalKind.BIFURCATION
+    directions = far.unstable - here.unstable
+    return _Taken(far, high, CriticalPoint(kind, far.at, far.ends, 0, directions))
+
+
+def _limit(system: _System, here: _State, ahead: _State, length: float) -> CriticalPoint:
+    """The extremum of the load within a step, by the zero of the tangent's share of the load."""
+    low, high, near, far = 0.0, length, here, ahead
+    for _ in range(MOST_ITERATIONS):
+        a, b = near.direction[-1], far.direction[-1]
+        share = np.clip(a / (a - b), 0.05, 0.95)
+        middle = low + share * (high - low)
+        found = system.ahead(here, float(middle))
+        if found is None:
+            break
+        if here.turns(found):
+            high, far = middle, found
+        else:
+            low, near = middle, found
+        if high - low < MEET * length:
+            break
+    best = min(near, far, key=lambda one: abs(one.direction[-1]))
+    directions = ahead.unstable - here.unstable
+    return CriticalPoint(CriticalKind.LIMIT, best.at, best.ends, 0, directions)
 
 
 class _System:
@@ -152,14 +332,51 @@ class _System:
         self.residual(scaled, factor)
         return (above - below) / 2
 
-    def direction(self, scaled: FloatArray, factor: float, before: FloatArray | None) -> FloatArray:
-        """(n + 1,) unit tangent of the path, onwards."""
+    def state(
+        self, scaled: FloatArray, factor: float, before: FloatArray | None, iterations: int = 0
+    ) -> _State:
+        """The equilibrium with all that a path needs to know of it.
+
+        before : (n + 1,) tangent of the path before; None at rest, where the load grows.
+        """
         load = self.by_load(scaled, factor)
-        matrix = np.column_stack([self.tangent(scaled, factor), load])
+        tangent, ends = self.tangent(scaled, factor), self.shape.end_position.copy()
         ahead = np.append(np.zeros(self.size), 1.0) if before is None else before
-        bordered = np.vstack([matrix, ahead])
-        found = np.linalg.solve(bordered, np.append(np.zeros(self.size), 1.0))
-        return np.asarray(found / np.linalg.norm(found))
+        matrix = np.column_stack([tangent, load])
+        found = np.linalg.solve(np.vstack([matrix, ahead]), np.append(np.zeros(self.size), 1.0))
+        direction = found / np.linalg.norm(found)
+        sign = float(np.linalg.slogdet(np.vstack([matrix, direction]))[0])
+        stable, unstable = self._stability(tangent)
+        return _State(scaled, factor, direction, ends, stable, unstable, sign, iterations)
+
+    def _stability(self, tangent: FloatArray) -> tuple[bool, int]:
+        """Whether the potential has a minimum, and the directions in which it falls."""
+        if self.conservative:
+            values = np.linalg.eigvalsh((tangent + tangent.T) / 2)
+            unstable = max(int((values < 0).sum()) - self.held, 0)
+            return unstable == 0, unstable
+        sign = np.linalg.slogdet(tangent)[0] * (-1) ** self.held
+        return bool(is_stable(tangent, self.held, False)), int(sign < 0)
+
+    def ahead(self, here: _State, length: float) -> _State | None:
+        """The equilibrium a step ahead, None where there is none near the tangent."""
+        found = self.correct(here.here, here.at, here.direction, length)
+        if found is None:
+            return None
+        drift = np.append(found[0], found[1]) - here.place - length * here.direction
+        if np.linalg.norm(drift) > DRIFT * length:
+            return None
+        try:
+            state = self.state(found[0], found[1], here.direction, found[2])
+        except np.linalg.LinAlgError:
+            return None
+        return state if here.direction @ state.direction >= BEND else None
+
+    def settled(self, before: _State, beyond: _State, factor: float) -> _State:
+        """The equilibrium at a load between two points."""
+        share = (factor - before.at) / (beyond.at - before.at)
+        near = before.here + share * (beyond.here - before.here)
+        return self.state(self.settle(near, factor), factor, beyond.direction)
 
     def correct(
         self, here: FloatArray, at: float, direction: FloatArray, length: float
@@ -180,7 +397,7 @@ class _System:
             now = now - change
             if not np.isfinite(now).all() or np.linalg.norm(now - start) > 3 * length:
                 return None
-            if np.linalg.norm(change) < CLOSE * length:
+            if np.linalg.norm(change) < max(CLOSE * length, ROUNDING):
                 return now[:-1], float(now[-1]), count
         return None
 
@@ -193,26 +410,3 @@ class _System:
             if np.linalg.norm(change) < CLOSE:
                 break
         return near
-
-    def point(
-        self, scaled: FloatArray, factor: float
-    ) -> tuple[float, FloatArray, FloatArray, bool]:
-        """Factor, tip, ends of segments, stability."""
-        self.residual(scaled, factor)
-        ends = self.shape.end_position.copy()
-        stable = is_stable(self.tangent(scaled, factor), self.held, self.conservative)
-        return factor, ends[-1], ends, stable
-
-
-def _extremes(factors: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Turning points of the load, by parabolas in the number of the point."""
-    rises = np.diff(factors)
-    limits, places = [], []
-    for k in range(1, len(factors) - 1):
-        if rises[k - 1] * rises[k] < 0:
-            second = rises[k] - rises[k - 1]
-            t = -(rises[k] + rises[k - 1]) / 2 / second
-            weights = np.array([t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2])
-            limits.append(weights @ factors[k - 1 : k + 2])
-            places.append(np.tensordot(weights, ends[k - 1 : k + 2], axes=1))
-    return np.array(limits), np.array(places).reshape(-1, *ends.shape[1:])

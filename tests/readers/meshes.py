@@ -75,9 +75,10 @@ def read_msh(file: Path) -> VolumeMesh:
     read, points, place = _by_gmsh(file)
     groups = {name: (dimension, tag, cells) for name, dimension, tag, cells in read["groups"]}
     numbers = {name: tag for name, (_, tag, _) in groups.items()}
-    assert numbers == TAGS | {"material": MATERIAL}
-    at, areas = {}, {}
-    for name in TAGS:
+    assert numbers.items() <= (TAGS | {"material": MATERIAL}).items()
+    at = dict.fromkeys(TAGS, np.zeros((0, 4, 3)))
+    areas = dict.fromkeys(TAGS, 0.0)
+    for name in groups.keys() & TAGS.keys():  # a supply without chambers has no walls
         dimension, _, cells = groups[name]
         assert dimension == 2
         (one,) = cells.values()

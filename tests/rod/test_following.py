@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from beamopt.arrays import FloatArray
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.modes import StrainModes
-from beamopt.rod.path import follow_path
+from beamopt.rod.path import CriticalKind, follow_path
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
@@ -97,7 +97,9 @@ def test_an_arch_that_is_too_long_for_its_rise_evades_sideways() -> None:
     found = solved(arch(100.0, 8.0), 7)
     assert found.status == (RodStatus.BUCKLED,)
     path = follow_path(arch(100.0, 8.0), step=0.1, steps=150, modes=7)
-    assert found.factor[0] < 0.99 * path.limits[0]
+    assert [one.kind for one in path.critical] == [CriticalKind.BIFURCATION, CriticalKind.LIMIT]
+    assert found.factor[0] == pytest.approx(path.bifurcations[0], abs=3e-4)
+    assert path.bifurcations[0] < 0.99 * path.limits[0]
 
 
 @pytest.mark.parametrize("share", [1.01, 2.0, 100.0])
