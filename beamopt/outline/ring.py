@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,7 +73,7 @@ def circle(radius: float, sagitta: float) -> FloatArray:
 def quad_segs(radius: float) -> int:
     """Edges of a quarter of a circle in a buffer, all buffers' edges alike far off their arcs."""
     usual, count = QUARTER
-    return round(count * max(1.0, radius / usual) ** 0.5)
+    return round(count * math.sqrt(max(1.0, radius / usual)))
 
 
 def _steps(radius: float, angle: float, sagitta: float) -> int:
