@@ -19,7 +19,7 @@ from beamopt.section.grid import PolarGrid, angle_between
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["drawing_faults", "drawn_regions", "outside", "solid"]
+__all__ = ["drawing_faults", "drawn_regions", "least_width", "outside", "solid", "too_thin"]
 
 
 NOTHING = 1e-6  # mm; radii below it have no arc
@@ -67,8 +67,20 @@ def _hidden(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
     return [number for number in range(len(polygons)) if number not in visible]
 
 
+def least_width(grid: PolarGrid) -> float:
+    """A drawn chamber that is nowhere wider can not be told from the edges of its arcs [mm]."""
+    return 2 * fine_sagitta(grid)
+
+
+def too_thin(shapes: Sequence[Shape], grid: PolarGrid) -> list[int]:
+    """Numbers of the shapes that are nowhere as wide as the least width, ascending."""
+    sagitta = fine_sagitta(grid)
+    polygons = _drawn_polygons(shapes, sagitta)
+    return [number for number, polygon in enumerate(polygons) if solid(polygon, sagitta).is_empty]
+
+
 def outside(shapes: Sequence[Shape], grid: PolarGrid) -> list[int]:
-    """Numbers of the shapes that have no area within the ring or sector, ascending."""
+    """Numbers of the shapes of which the ring or sector has no part that wide, ascending."""
     sagitta = fine_sagitta(grid)
     ring = ring_polygon(grid)
     return [
@@ -135,8 +147,10 @@ def _joined(geometry: Geometry, polygon: Geometry, ring_piece: bool, sagitta: fl
     """
     import shapely
 
+    if not geometry.dwithin(polygon, 2 * sagitta):
+        return geometry.union(polygon)
     joined = geometry.union(polygon, grid_size=LATTICE)
-    if not ring_piece or not geometry.dwithin(polygon, 2 * sagitta):
+    if not ring_piece:
         return joined
     closed = _offset(_offset(joined, sagitta), -sagitta)
     gaps = parts_of(closed.difference(joined, grid_size=LATTICE))
