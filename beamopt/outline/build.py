@@ -18,6 +18,7 @@ from beamopt.outline.inspection import (
     contacts,
     nearest,
     pinches,
+    self_contacts,
     thicknesses,
     topology,
 )
@@ -133,6 +134,8 @@ def _build(
     smooth = _smooth(grid, source, rules, ring)
     moments = _smooth_moments(grid, smooth)
     faults = contacts(smooth, ring)
+    if not (rules.sealed and rules.wall > TOUCH):  # else cut, as thick as a wall
+        faults += self_contacts(smooth)
     if not (rules.sealed or isinstance(source, FeaturePoints)):
         faults += pinches(smooth)
     notices = (
