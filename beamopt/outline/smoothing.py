@@ -92,16 +92,26 @@ def sealed_chambers(
     return tuple(tuple(shapely.simplify(part, tolerance) for part in region) for region in regions)
 
 
-def _offset(geometry: Geometry, by: float) -> Geometry:
+def _offset(geometry: Geometry, by: float, quarter: int | None = None) -> Geometry:
     if abs(by) > LOCAL:  # a short edge beside a long one would turn all of it
         geometry = geometry.segmentize(LOCAL)
-    return geometry.buffer(by, quad_segs=quad_segs(abs(by)))
+    return geometry.buffer(by, quad_segs=quarter or quad_segs(abs(by)))
 
 
 def _opened(geometry: Geometry, rounding: float) -> Region:
-    """What a disc of radius `rounding` [mm] reaches from inside."""
-    if rounding > 0:
+    """What a disc of radius `rounding` [mm] reaches from inside.
+
+    Opening cuts off the vertices of arcs, by more the larger the disc: a large one comes back as a
+    polygon of its area, and what that has beyond the circle reaches them.
+    """
+    if 0 < rounding <= LOCAL:
         return parts_of(_offset(_offset(geometry, -rounding), rounding))
+    if rounding > 0:
+        quarter = 3 * quad_segs(rounding) // 4  # so few that it reaches a fine sagitta beyond
+        step = np.pi / 2 / quarter
+        polygon = rounding * float(np.sqrt(step / np.sin(step)))
+        back = _offset(_offset(geometry, -rounding), polygon, quarter)
+        return parts_of(back.intersection(geometry))
     # mitred, so that corners stay sharp
     thinned = geometry.buffer(-NARROWEST, join_style="mitre")
     return parts_of(thinned.buffer(NARROWEST, join_style="mitre").intersection(geometry))

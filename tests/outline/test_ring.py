@@ -7,7 +7,7 @@ import shapely
 from beamopt.outline.build import build_outline
 from beamopt.outline.ring import shrunk_ring
 from beamopt.section.cross_section import CrossSection
-from beamopt.section.drawing import RingPiece, Shape
+from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.seal import SealRules
@@ -89,3 +89,27 @@ def lopsided(moments: Moments, span: float) -> float:
     area, x, y = moments.raw[1, :3]
     half = np.radians(span) / 2
     return float((x * np.sin(half) - y * np.cos(half)) / area / OUTER)
+
+
+@pytest.mark.parametrize("rounding", [0.5, 0.6, 1.0, 2.0, 4.0, 4.4])
+@pytest.mark.parametrize("wall", [0.0, 0.9, 3.0])
+def test_rounding_leaves_round_chambers_alone(wall: float, rounding: float) -> None:
+    """A circle is its own opening by any smaller disc."""
+    angles = 0.3 + 2 * np.pi / 3 * np.arange(3)
+    shapes = [
+        Circle(supply, (float(17.5 * np.cos(a)), float(17.5 * np.sin(a))), 4.5)
+        for supply, a in enumerate(angles, 1)
+    ]
+    outline = build_outline(PolarGrid(), shapes, SealRules(1.0, wall, rounding))
+    assert outline.faults == ()
+    np.testing.assert_allclose(outline.moments.chamber_areas, np.pi * 4.5**2, rtol=6e-5)
+
+
+@pytest.mark.parametrize("rounding", [0.5, 0.6, 1.0, 2.0, 4.0])
+def test_rounded_corners_of_a_ring_piece(rounding: float) -> None:
+    """As if the piece had been drawn with round corners."""
+    sharp, drawn = (
+        build_outline(PolarGrid(), [RingPiece(1, (12.3, 22), (0, 95), corner)], rules)
+        for corner, rules in ((0.0, SealRules(1.0, 0.0, rounding)), (rounding, SealRules(1.0)))
+    )
+    assert sharp.moments.raw[1, 0] == pytest.approx(drawn.moments.raw[1, 0], rel=2e-5)
