@@ -43,6 +43,8 @@ SLACK = 0.02
 the sagitta: vertices of both sides stand out into them by up to one sagitta each."""
 
 LATTICE = 2.0**-31  # mm; lengths at the usual radius are rounded to this: the same at any size
+SAME = 1e-6  # of an area: two that differ by less are one
+APART = 2.0**-21  # mm; points nearer to each other are one vertex
 TRIES = 4  # at resampling, each with a quarter of the sagitta
 
 
@@ -236,14 +238,23 @@ def _locked(points: FloatArray) -> FloatArray:
     return points
 
 
+def _key(point: Sequence[float]) -> tuple[int, ...]:
+    return tuple(round(value / APART) for value in point)
+
+
 def _pieces(ring: Polygon, regions: Sequence[Region]) -> tuple[Piece, ...]:
     """What chambers leave of the ring, each loop named after the chamber that its points are of."""
     import shapely
 
     parts = [part for region in regions for part in region]
-    material = parts_of(ring.difference(shapely.union_all(parts)))
+    chambers = shapely.union_all(parts)
+    area = sum(part.area for part in parts)
+    if abs(chambers.area - area) > SAME * area:
+        # without a grid GEOS may lose one of several that touch within a rounding
+        chambers = shapely.union_all(parts, grid_size=LATTICE)
+    material = parts_of(ring.difference(chambers))
     owner = {
-        tuple(point): supply
+        _key(point): supply
         for supply, region in zip(SUPPLIES, regions, strict=True)
         for part in region
         for point in shapely.get_coordinates(part).tolist()
@@ -252,7 +263,7 @@ def _pieces(ring: Polygon, regions: Sequence[Region]) -> tuple[Piece, ...]:
     for polygon in sorted(material, key=lambda polygon: -polygon.area):
         loops = []
         for points in (loop[::-1] for loop in loops_of(polygon)):
-            owners = {owner.get(tuple(point), MATERIAL) for point in points.tolist()}
+            owners = {owner.get(_key(point), MATERIAL) for point in points.tolist()}
             loops.append(Loop(_locked(points), owners.pop() if len(owners) == 1 else MATERIAL))
         pieces.append(Piece(loops[0], tuple(loops[1:])))
     return tuple(pieces)

@@ -123,3 +123,24 @@ def test_turned_with_its_points() -> None:
     one, two = (build_outline(RING, each, RULES).smooth_moments for each in (points, turned))
     np.testing.assert_allclose(one.chamber_areas, two.chamber_areas, atol=0.05)
     np.testing.assert_allclose(one.principal[0], two.principal[0], rtol=1e-4)
+
+
+@pytest.mark.parametrize("rules", [SealRules(2.0), SealRules(1.0, 0.0, 0.5)])
+def test_chambers_that_touch_are_no_material(rules: SealRules) -> None:
+    """Without walls supplies meet along lines; material is still what all of them leave."""
+    grid = PolarGrid(2, 25, 48, 90)
+    cut = FeaturePoints(
+        np.array([7.747826804396209, -6.802243137532561, -6.889806707316043, 2.293781447616993,
+                  -7.93795209573468, -8.112868529001911, -9.667957993347756, 5.855326069605605,
+                  -3.0210931414541866]),
+        np.array([-18.29236285548707, 19.12130276601693, 12.285884699316192, -18.098022856714437,
+                  8.658495991673211, 8.561515271061648, 3.908852252363644, 24.059477260851843,
+                  1.6093424721961438]),
+        np.array([2, 0, 0, 0, 0, 3, 1, 3, 2]),
+    )  # fmt: skip
+    rng = np.random.default_rng(0)
+    for points in (cut, *(FeaturePoints.random(grid, 12, rng) for _ in range(60))):
+        outline = build_outline(grid, points, rules)
+        raw, smooth = outline.moments.raw, outline.smooth_moments.raw
+        assert raw[:, 0].sum() == pytest.approx(grid.area, rel=1e-3)
+        assert raw[0, 0] == pytest.approx(smooth[0, 0], rel=2e-3)
