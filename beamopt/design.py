@@ -54,7 +54,7 @@ class Design(Model):
     schema_: Literal["beamopt-design/1"] = Field(alias="schema")
     grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
     feature_points: Points | None = quantity(None, "x, y, type of every feature point")
-    drawing: list[DrawnChamber] | None = quantity(None, "a list of drawn chambers")
+    drawing: tuple[DrawnChamber, ...] | None = quantity(None, "a list of drawn chambers")
     wall_elements: WallElements = quantity(
         ..., "elements of a wall between supplies, even; none if sealed", low=0, high=64
     )

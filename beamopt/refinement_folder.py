@@ -85,7 +85,7 @@ def becomes(folder: Path, best: str | None, found: Refinement | None) -> Earlier
     if not there.exists():
         return EarlierRefinement.NONE
     if not earlier.exists() or earlier.read_text(encoding="utf-8") != best:
-        return EarlierRefinement.SET_ASIDE if found is None else EarlierRefinement.REPLACED
+        return EarlierRefinement.SET_ASIDE
     if found is None:
         return EarlierRefinement.STAYS
     notes = load_design(there).notes

@@ -183,6 +183,21 @@ def test_a_search_that_goes_on_sets_aside_what_was_refined_of_an_earlier_best(
     assert "refinement" not in json.loads((folder / "summary.json").read_text())
 
 
+def test_a_refinement_of_an_earlier_best_is_set_aside_where_the_new_one_is_refined_too(
+    tmp_path: Path,
+) -> None:
+    folder, keys = tmp_path / "run", [*KEYS, *SHORT, "refine.finish=true"]
+    optimize(load_scene("hand-drawn-workspace", keys), folder, figures=False)
+    refined = {name: one for name, one in content(folder).items() if name in REFINEMENT_FILES}
+    longer = load_scene("hand-drawn-workspace", [*keys, "search.generations=5"])
+    result = optimize(longer, folder, resume=True, figures=False)
+    assert result.there is EarlierRefinement.SET_ASIDE
+    assert content(folder / "earlier-refinement-1") == refined
+    assert design_file(folder).name == "refined.json"
+    assert result.refinement is not None
+    assert load_design(folder / "refined.json").json() == result.refinement.design.json()
+
+
 @pytest.mark.parametrize("asked", [(), ("--refine",)], ids=["search", "search and refining"])
 def test_resuming_a_finished_run_changes_no_byte(
     asked: tuple[str, ...], finished, tmp_path: Path, capsys: pytest.CaptureFixture[str]
