@@ -124,8 +124,11 @@ def _with_length(
     if not at_rest.any() or scene.climb.model.straight_length is None:
         return usual, LengthSource.DEFAULT
     tips = scene.target.base.to_local(table.stacked(["x", "y", "z"])[at_rest])
+    length = float(tips[:, 2].mean())
+    if length < scene.grid.outer_radius:  # no rod: a table in metres, say
+        return usual, LengthSource.DEFAULT
     try:
-        actuator = usual.actuator.model_copy(update={"length": float(tips[:, 2].mean())})
+        actuator = usual.actuator.model_copy(update={"length": length})
     except InputError:
         return usual, LengthSource.DEFAULT
     return usual.model_copy(update={"actuator": actuator}), LengthSource.REST
