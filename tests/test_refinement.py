@@ -303,4 +303,4 @@ def test_a_refined_design_says_how_it_follows_trajectories_and_what_rules_weigh(
     assert squares == pytest.approx(found.refined.after.L)
     said = json.loads((tmp_path / "run" / "summary.json").read_text())["refinement"]
     assert said["after"]["R"] == found.refined.after.R > 0
-    assert said["faults"] == [str(fault) for fault in found.faults]
+    assert said["faults"] == [str(fault) for fault in found.design.findings]
