@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -75,8 +75,10 @@ class Combinations:
 
     def ending(self, row: int) -> str:
         """How a combination ended, and where, for people."""
-        text, at = self.texts[row], self.ends_at[row]
-        return text if np.isnan(at) else f"{text} at P = {at:.4g} kPa"
+        ended, at = self.endings[row], float(self.ends_at[row])
+        if ended is None or np.isnan(at):
+            return self.texts[row]
+        return str(replace(ended, load=at))
 
 
 @dataclass(frozen=True, eq=False)
