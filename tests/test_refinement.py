@@ -59,6 +59,7 @@ def test_what_a_refinement_says_of_itself(finished) -> None:
     found = result.refinement
     assert found is not None
     said = json.loads((folder / "summary.json").read_text())["refinement"]
+    assert said["ended"] == RefineStatus.REFINED.name
     assert said["before"]["L"] == result.verdict.L
     assert said["after"]["L"] == found.refined.after.L
     weight = result.scene.search.neighbour_weight
