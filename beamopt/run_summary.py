@@ -18,7 +18,7 @@ __all__ = ["summary"]
 
 
 def summary(result: Optimisation) -> dict[str, Any]:
-    """How a search ended and what it found, without refining and without times."""
+    """Return the ending and the results of a search, without refining and without times."""
     pieces = result.best.section.pieces
     return (
         {

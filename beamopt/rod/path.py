@@ -40,7 +40,7 @@ class PathStatus(Enum):
 
 
 class CriticalKind(Enum):
-    """What happens where the tangent is singular; the value is the text shown to people."""
+    """Kind of a point where the tangent is singular; the value is the text shown to people."""
 
     LIMIT = "the load has an extremum along the path"
     BIFURCATION = "another branch crosses the path"
@@ -222,11 +222,11 @@ class _State:
         return np.append(self.here, self.at)
 
     def turns(self, other: _State) -> bool:
-        """Whether the load has an extremum between here and there."""
+        """True if the load has an extremum between here and there."""
         return bool(self.direction[-1] * other.direction[-1] < 0)
 
     def parted(self, other: _State) -> bool:
-        """Whether there is more between here and there than a limit point or nothing."""
+        """True if there is more between here and there than a limit point or nothing."""
         change = abs(other.unstable - self.unstable)
         return self.sign * other.sign < 0 or change != self.turns(other)
 
