@@ -133,7 +133,7 @@ class Design(Model):
 
     @cached_property
     def findings(self) -> tuple[Fault, ...]:
-        """What is wrong with its section, and what of the file has no effect, the worst first.
+        """Faults of its section and parts of the file without effect, the worst first.
 
         Every command says these; sealed or not, skins, walls and openings are the outline's.
         """
@@ -151,10 +151,10 @@ class Design(Model):
         if self.drawing is None or self.seal.rules.sealed:
             return
         nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
-        told = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
+        found = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
         labels, (x, y) = self.section.labels, self.section.grid.centroids
         for number, shape in enumerate(chamber.build() for chamber in self.drawing):
-            if number not in told and not (labels[shape.covers(x, y)] == shape.supply).any():
+            if number not in found and not (labels[shape.covers(x, y)] == shape.supply).any():
                 yield Fault(FaultKind.LOST, supplies=(shape.supply,), drawn=number)
 
     @cached_property

@@ -85,7 +85,7 @@ class RunFolder:
 
     @property
     def has_result(self) -> bool:
-        """Whether a search has ended here, or was interrupted and said so."""
+        """True if a search has ended here, or was interrupted and said so."""
         return (self.path / "provenance.json").exists()
 
     def check(self, scene: Scene) -> None:

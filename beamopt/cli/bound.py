@@ -38,7 +38,7 @@ NOTHING = 1e-12  # of H²: less than this is rounding
 
 
 class LengthSource(Enum):
-    """Where the length of a bare table's actuator comes from; the value is the text for people."""
+    """Source of the length of a bare table's actuator; the value is the text for people."""
 
     REST = "the table's tip without pressure"
     ASKED = "--set actuator.length"

@@ -31,7 +31,7 @@ class PathStatus(Enum):
 
 
 class CriticalKind(Enum):
-    """What happens where the tangent is singular; the value is the text shown to people."""
+    """Kind of a point where the tangent is singular; the value is the text shown to people."""
 
     LIMIT = "the load has an extremum along the path"
     BIFURCATION = "another branch crosses the path"

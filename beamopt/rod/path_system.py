@@ -47,11 +47,11 @@ class PathState:
         return np.append(self.here, self.at)
 
     def turns(self, other: PathState) -> bool:
-        """Whether the load has an extremum between here and there."""
+        """True if the load has an extremum between here and there."""
         return bool(self.direction[-1] * other.direction[-1] < 0)
 
     def parted(self, other: PathState) -> bool:
-        """Whether there is more between here and there than a limit point or nothing."""
+        """True if there is more between here and there than a limit point or nothing."""
         change = abs(other.unstable - self.unstable)
         return self.sign * other.sign < 0 or change != self.turns(other)
 
