@@ -74,15 +74,18 @@ class Design(Model):
         return self
 
     def _check_drawing(self) -> None:
-        from beamopt.outline.drawn import outside
+        from beamopt.outline.drawn import least_width, outside, too_thin
 
         if not self.drawing:
             return
-        grid = self.grid
-        for number in outside([chamber.build() for chamber in self.drawing], grid.build()):
+        grid, shapes = self.grid.build(), [chamber.build() for chamber in self.drawing]
+        width = f"at least {least_width(grid):g} mm wide"
+        for number in too_thin(shapes, grid):
+            raise InputError("", f"drawing[{number}]", None, f"is too thin: must be {width}")
+        for number in outside(shapes, grid):
             within = f"within radii {grid.inner_radius:g} and {grid.outer_radius:g} mm"
-            sector = "" if grid.build().is_full_ring else f", {grid.start:g}…{grid.stop:g}°"
-            allowed = f"lies outside the section: must have an area {within}{sector}"
+            sector = "" if grid.is_full_ring else f", {self.grid.start:g}…{self.grid.stop:g}°"
+            allowed = f"lies outside the section: must have an area {within}{sector}, {width}"
             raise InputError("", f"drawing[{number}]", None, allowed)
 
     @classmethod

@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beamopt.chambers import DrawnChamber
 from beamopt.cli.application import run
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
+from beamopt.outline.drawn import outside, too_thin
 from beamopt.outline.faults import FaultKind, Severity, summaries
 from beamopt.seal import Seal
+from beamopt.section.drawing import RingPiece
+from beamopt.section.grid import PolarGrid
 from femcheck.cli.application import run as run_femcheck
 from tests.export.samples import drawn, random_section
 
@@ -57,6 +61,36 @@ def test_a_chamber_outside_is_refused(
         load_design(file)
     assert caught.value.key == "drawing[1]"
     assert str(file) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "chamber",
+    [
+        {"r": [14.0, 14.0005], "phi": [0.0, 90.0]},
+        {"r": [14.0, 18.0], "phi": [0.0, 0.001]},
+        {"center": [17.5, 0.0], "radius": 4e-4},
+    ],
+)
+def test_a_chamber_that_is_only_thin_is_not_said_to_be_outside(
+    chamber: dict[str, Any], tmp_path: Path
+) -> None:
+    grid, thin = PolarGrid(), DrawnChamber.model_validate({"supply": 2, **chamber}).build()
+    beyond = RingPiece(1, (25.0, 30.0), (0.0, 80.0))
+    assert too_thin([beyond, thin], grid) == [1]
+    assert outside([beyond], grid) == [0]
+    data = json.loads(drawn([ROUND[0]], Seal()).json())
+    data["drawing"].append({"supply": 2, **chamber})
+    file = tmp_path / "design.json"
+    file.write_text(json.dumps(data))
+    with pytest.raises(InputError) as caught:
+        load_design(file)
+    assert caught.value.key == "drawing[1]"
+    assert "0.001 mm" in caught.value.allowed
+
+
+def test_a_thin_chamber_that_can_be_told_from_its_arcs() -> None:
+    wide = [{"supply": 1, "r": [14.0, 14.0 + 1.1e-3], "phi": [0.0, 90.0]}]
+    assert drawn(wide, Seal()).outline.chambers_of(1)
 
 
 @pytest.mark.parametrize("seal", [Seal(), SEALED])

@@ -18,6 +18,7 @@ from beamopt.outline.inspection import (
     contacts,
     nearest,
     pinches,
+    self_contacts,
     thicknesses,
     topology,
 )
@@ -58,6 +59,9 @@ def build_outline(
     Without a skin nothing is changed: chambers are the Voronoi cells or the drawn shapes as they
     are, clipped to the ring, and `rules.wall` is only checked.
 
+    Where the polygons can not be made, the outline is empty and its only fault is
+    `FaultKind.INVALID`.
+
     Edges are straight; the polygons that stand for curves have the curves' area. All is done in a
     section of 25 mm outer radius and then scaled, so that a section has one shape at every size.
 
@@ -76,8 +80,14 @@ def build_outline(
         raise ValueError(f"sagitta = {sagitta}: must be above 0 mm")
     if isinstance(source, FeaturePoints):
         source = points_with_cells(grid, source)
+    from shapely.errors import GEOSException
+
     usual = _at_usual_size(grid, source, rules, size)
-    return _build(*usual, sagitta / size, inspected).scaled(size)
+    try:
+        return _build(*usual, sagitta / size, inspected).scaled(size)
+    except GEOSException:  # polygons that touch in a way that their overlay can not resolve
+        nothing = Moments(np.zeros((1 + len(SUPPLIES), 6)))
+        return Outline((), (), (Fault(FaultKind.INVALID),), nothing, grid.outer_radius)
 
 
 def _at_usual_size(
@@ -124,6 +134,8 @@ def _build(
     smooth = _smooth(grid, source, rules, ring)
     moments = _smooth_moments(grid, smooth)
     faults = contacts(smooth, ring)
+    if not (rules.sealed and rules.wall > TOUCH):  # else cut, as thick as a wall
+        faults += self_contacts(smooth)
     if not (rules.sealed or isinstance(source, FeaturePoints)):
         faults += pinches(smooth)
     notices = (

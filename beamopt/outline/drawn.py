@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.outline.cells import LATTICE
 from beamopt.outline.faults import Fault, FaultKind
 from beamopt.outline.ring import arc, circle, fine_sagitta, ring_polygon
 from beamopt.outline.smoothing import parts_of
@@ -18,7 +19,7 @@ from beamopt.section.grid import PolarGrid, angle_between
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["drawing_faults", "drawn_regions", "outside", "solid"]
+__all__ = ["drawing_faults", "drawn_regions", "least_width", "outside", "solid", "too_thin"]
 
 
 NOTHING = 1e-6  # mm; radii below it have no arc
@@ -27,7 +28,8 @@ NOTHING = 1e-6  # mm; radii below it have no arc
 def drawn_regions(shapes: Sequence[Shape], sagitta: float) -> tuple[Geometry, ...]:
     """For supplies 1, 2, 3 what is drawn of them; a later shape covers an earlier one.
 
-    Two polygons of one arc differ by up to a sagitta: what is narrower than two of them is none.
+    Two polygons of one arc differ by up to a sagitta: what is narrower than two of them is none,
+    and so is a gap between two ring pieces of one supply.
     """
     import shapely
 
@@ -37,7 +39,7 @@ def drawn_regions(shapes: Sequence[Shape], sagitta: float) -> tuple[Geometry, ..
         own, polygon = shapes[number].supply, polygons[number]
         for supply in SUPPLIES:
             drawn[supply] = (
-                drawn[supply].union(polygon)
+                _joined(drawn[supply], polygon, isinstance(shapes[number], RingPiece), sagitta)
                 if supply == own
                 else _without(drawn[supply], polygon, sagitta)
             )
@@ -65,14 +67,26 @@ def _hidden(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
     return [number for number in range(len(polygons)) if number not in visible]
 
 
+def least_width(grid: PolarGrid) -> float:
+    """A drawn chamber that is nowhere wider can not be told from the edges of its arcs [mm]."""
+    return 2 * fine_sagitta(grid)
+
+
+def too_thin(shapes: Sequence[Shape], grid: PolarGrid) -> list[int]:
+    """Numbers of the shapes that are nowhere as wide as the least width, ascending."""
+    sagitta = fine_sagitta(grid)
+    polygons = _drawn_polygons(shapes, sagitta)
+    return [number for number, polygon in enumerate(polygons) if solid(polygon, sagitta).is_empty]
+
+
 def outside(shapes: Sequence[Shape], grid: PolarGrid) -> list[int]:
-    """Numbers of the shapes that have no area within the ring or sector, ascending."""
+    """Numbers of the shapes of which the ring or sector has no part that wide, ascending."""
     sagitta = fine_sagitta(grid)
     ring = ring_polygon(grid)
     return [
         number
         for number, polygon in enumerate(_drawn_polygons(shapes, sagitta))
-        if solid(polygon.intersection(ring), sagitta).is_empty
+        if solid(polygon.intersection(ring, grid_size=LATTICE), sagitta).is_empty
     ]
 
 
@@ -99,7 +113,7 @@ def drawing_faults(
             place = _xy(cut.interpolate(0.5, normalized=True))
             faults.append(Fault(FaultKind.CUT, beyond.area, place, supplies, drawn=number))
         own = shapely.MultiPolygon(list(chambers[shape.supply - 1]))
-        if solid(polygon.intersection(own), sagitta).is_empty:
+        if solid(polygon.intersection(own, grid_size=LATTICE), sagitta).is_empty:
             faults.append(Fault(FaultKind.LOST, polygon.area, middle, supplies, drawn=number))
     return faults
 
@@ -115,7 +129,7 @@ def _visible(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
     for number in reversed(range(len(polygons))):
         if not _without(polygons[number], cover, sagitta).is_empty:
             found.append(number)
-            cover = cover.union(polygons[number])
+            cover = cover.union(polygons[number], grid_size=LATTICE)
     return found[::-1]
 
 
@@ -123,7 +137,31 @@ def _without(geometry: Geometry, polygon: Geometry, sagitta: float) -> Geometry:
     """What a polygon leaves of a geometry; no slivers and spikes narrower than two sagittas."""
     if not geometry.intersects(polygon):
         return geometry
-    return solid(geometry.difference(polygon), sagitta)
+    return solid(geometry.difference(polygon, grid_size=LATTICE), sagitta)
+
+
+def _joined(geometry: Geometry, polygon: Geometry, ring_piece: bool, sagitta: float) -> Geometry:
+    """Both, and the gaps narrower than two sagittas beside a ring piece.
+
+    Circles that touch get no bridge: they have no side in common.
+    """
+    import shapely
+
+    if not geometry.dwithin(polygon, 2 * sagitta):
+        return geometry.union(polygon)
+    joined = geometry.union(polygon, grid_size=LATTICE)
+    if not ring_piece:
+        return joined
+    closed = _offset(_offset(joined, sagitta), -sagitta)
+    gaps = parts_of(closed.difference(joined, grid_size=LATTICE))
+    beside = [gap for gap in gaps if gap.dwithin(polygon, LATTICE)]
+    return shapely.union_all([joined, *beside], grid_size=LATTICE)
+
+
+def _offset(geometry: Geometry, by: float) -> Geometry:
+    """Moved by less than any edge, corners sharp [mm]."""
+    with np.errstate(invalid="ignore"):  # mitres of straight corners divide 0 by 0 in GEOS
+        return geometry.buffer(by, join_style="mitre")
 
 
 def solid(geometry: Geometry, sagitta: float) -> Geometry:
@@ -131,11 +169,8 @@ def solid(geometry: Geometry, sagitta: float) -> Geometry:
     import shapely
 
     geometry = shapely.MultiPolygon(parts_of(geometry))  # not the lines where polygons touch
-    with np.errstate(invalid="ignore"):  # mitres of straight corners divide 0 by 0 in GEOS
-        thick = geometry.buffer(-sagitta, join_style="mitre").buffer(
-            2 * sagitta, join_style="mitre"
-        )
-    return geometry.intersection(thick)
+    thick = _offset(_offset(geometry, -sagitta), 2 * sagitta)
+    return geometry.intersection(thick, grid_size=LATTICE)
 
 
 def _circle(shape: Circle, sagitta: float) -> Polygon:

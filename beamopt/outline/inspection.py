@@ -18,13 +18,14 @@ from beamopt.section.seal import SealRules
 if TYPE_CHECKING:
     from shapely import Geometry, Polygon
 
-__all__ = ["TOUCH", "contacts", "nearest", "pinches", "thicknesses", "topology"]
+__all__ = ["TOUCH", "contacts", "nearest", "pinches", "self_contacts", "thicknesses", "topology"]
 
 TOUCH = 0.01
 """mm; what is nearer is not separated by a wall."""
 
 PINCH = 0.05  # mm; drawn shapes that touch overlap by their polygons in less than twice this
 SPACING = 0.1  # mm between rays
+APART = 100.0  # times as far along a wall as across: no corner of material of more than 1.2°
 FACING = 0.7  # cosine: walls that close in on each other by more than 45° are a corner's two sides
 
 
@@ -37,6 +38,14 @@ def contacts(regions: Sequence[Region], ring: Polygon) -> list[Fault]:
         kind = FaultKind.UNSEALED if len(supplies) > 1 else FaultKind.INVALID
         faults.append(Fault(kind, distance, place, supplies))
     return faults
+
+
+def self_contacts(regions: Sequence[Region]) -> list[Fault]:
+    """Chambers that nearly meet themselves: material within them as thin as what touches."""
+    return [
+        Fault(FaultKind.INVALID, distance, place, (supply,))
+        for supply, distance, place in _within_parts(regions, TOUCH, 1.0, APART, 5.0)
+    ]
 
 
 def pinches(regions: Sequence[Region]) -> list[Fault]:
@@ -77,11 +86,18 @@ def thicknesses(
     for supplies, distance, place in _between(regions, below):
         kind = FaultKind.WALL if len(supplies) > 1 else FaultKind.NECK
         faults.append(Fault(kind, distance, place, supplies, rules.wall))
-    return faults + _self_necks(regions, rules.wall, below)
+    for supply, distance, place in _within_parts(regions, below, FACING, 3.0, 2 * rules.wall):
+        faults.append(Fault(FaultKind.NECK, distance, place, (supply,), rules.wall))
+    return faults
 
 
-def _self_necks(regions: Sequence[Region], wall: float, below: float) -> list[Fault]:
-    """Necks between two walls of the same chamber."""
+def _within_parts(
+    regions: Sequence[Region], below: float, opposed: float, around: float, apart: float
+) -> list[tuple[int, float, tuple[float, float]]]:
+    """Supply, thickness and place of material between two walls of one chamber, the thinnest first.
+
+    Of places nearer to each other than `apart` [mm] only the thinnest: a long thin wall is one.
+    """
     loops = [
         (supply, part, loop)
         for supply, region in zip(SUPPLIES, regions, strict=True)
@@ -90,18 +106,14 @@ def _self_necks(regions: Sequence[Region], wall: float, below: float) -> list[Fa
     ]
     if below <= 0:
         return []
-    thin = thin_places([loop for _, _, loop in loops], below, SPACING, FACING)
-    faults: list[Fault] = []
+    thin = thin_places([loop for _, _, loop in loops], below, SPACING, opposed, around)
+    found: list[tuple[int, float, tuple[float, float]]] = []
     for k in np.argsort(thin.thickness, kind="stable"):
         (supply, part, _), (_, other, _) = loops[thin.start[k]], loops[thin.hit[k]]
         x, y = (float(value) for value in thin.middle[k])
-        apart = all(
-            fault.place and np.hypot(x - fault.place[0], y - fault.place[1]) > 2 * wall
-            for fault in faults
-        )
-        if part is other and apart:  # a long thin wall is one fault, at its thinnest
-            faults.append(Fault(FaultKind.NECK, float(thin.thickness[k]), (x, y), (supply,), wall))
-    return faults
+        if part is other and all(np.hypot(x - a, y - b) > apart for _, _, (a, b) in found):
+            found.append((supply, float(thin.thickness[k]), (x, y)))
+    return found
 
 
 def topology(pieces: Sequence[Piece], regions: Sequence[Region]) -> list[Fault]:

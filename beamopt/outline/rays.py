@@ -14,7 +14,6 @@ __all__ = ["Thin", "thin_places"]
 
 FAN = np.radians(8.0)  # between the rays from a sharp corner
 MOST_RAYS = 30_000  # or nearly; walls of a micrometre would ask for millions
-AROUND = 3.0  # times as long as the ray: no way round a corner of material
 NOTHING = 1e-7  # mm; a hit this near is the ray's own corner
 
 
@@ -30,7 +29,13 @@ class Thin(NamedTuple):
     hit: IndexArray
 
 
-def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, opposed: float) -> Thin:
+def thin_places(
+    loops: Sequence[FloatArray],
+    below: float,
+    spacing: float,
+    opposed: float,
+    around: float = 3.0,
+) -> Thin:
     """Where the material between two walls is thinner than `below` [mm].
 
     Where two walls come nearest to each other the normal of one meets the other at the distance
@@ -38,7 +43,7 @@ def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, oppos
     neck, between two chambers or between two parts of one. The two sides of a corner of material
     are always near each other; so walls of one loop only count when they face each other
     (`opposed` is the least cosine between one's normal and the other's, reversed) or are far from
-    each other along the loop.
+    each other along the loop: more than `around` times as far as across.
 
     loops : (n, 2) each, closed, material on the left [mm].
     """
@@ -81,7 +86,7 @@ def thin_places(loops: Sequence[FloatArray], below: float, spacing: float, oppos
     end = before[edge] + np.hypot(*(origin[k] + t[:, None] * ray[k] - a[edge]).T)
     total = np.bincount(owner, weights=length)[owner[edge]]
     way = np.minimum(np.abs(end - start), total - np.abs(end - start))
-    facing |= (owner[source[k]] != owner[edge]) | (way > AROUND * t)
+    facing |= (owner[source[k]] != owner[edge]) | (way > around * t)
     k, edge, t = k[facing], edge[facing], t[facing]
     middle = origin[k] + t[:, None] / 2 * ray[k]
     return Thin(t, middle, owner[source[k]], owner[edge])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ __all__ = [
     "arc",
     "circle",
     "fine_sagitta",
+    "quad_segs",
     "ring_polygon",
     "shrunk_ring",
     "usual_sagitta",
@@ -27,8 +29,8 @@ USUAL_RADIUS = 25.0
 at it."""
 
 FEWEST_VERTICES, MOST_VERTICES = 128, 100_000  # of a full turn
-QUAD_SEGS = 16
-"""Vertices of a quarter of a circle in a buffer: 0.6 µm off at a radius of 0.5 mm."""
+QUARTER = 0.5, 16
+"""mm; up to this radius, a quarter of a circle has so many edges in a buffer: 0.6 µm off."""
 
 
 def fine_sagitta(grid: PolarGrid) -> float:
@@ -68,6 +70,12 @@ def circle(radius: float, sagitta: float) -> FloatArray:
     return at * np.stack([np.cos(phi), np.sin(phi)], axis=1)
 
 
+def quad_segs(radius: float) -> int:
+    """Edges of a quarter of a circle in a buffer, all buffers' edges alike far off their arcs."""
+    usual, count = QUARTER
+    return round(count * math.sqrt(max(1.0, radius / usual)))
+
+
 def _steps(radius: float, angle: float, sagitta: float) -> int:
     step = 2 * np.arccos(max(1 - sagitta / radius, np.cos(np.pi / FEWEST_VERTICES)))
     return max(1, min(int(np.ceil(angle / max(step, 1e-9))), MOST_VERTICES))
@@ -83,14 +91,22 @@ def shrunk_ring(grid: PolarGrid, skin: float) -> Geometry:
     import shapely
 
     inner, outer = grid.inner_radius, grid.outer_radius
-    if not grid.is_full_ring:
-        return ring_polygon(grid).buffer(-skin, quad_segs=QUAD_SEGS)
-    low = inner + skin if inner > 0 else 0.0
-    return _band(grid, low, outer - skin) if low < outer - skin else shapely.Polygon()
+    low, high = inner + skin if inner > 0 else 0.0, outer - skin
+    if low >= high:
+        return shapely.Polygon()
+    band = _band(grid, low, high)
+    if grid.is_full_ring:
+        return band
+    ends = np.radians([grid.start, grid.start + grid.span])
+    across = np.array([inner, outer])[:, None]
+    lines = [across * np.array([np.cos(end), np.sin(end)]) for end in ends]
+    # not one offset of the sector: GEOS loses area where a skin is wider than the inner radius
+    skins = shapely.buffer(shapely.linestrings(lines), skin, quad_segs=quad_segs(skin))
+    return band.difference(shapely.union_all(skins))
 
 
 def _band(grid: PolarGrid, inner: float, outer: float) -> Polygon:
-    """Between two radii; both arcs have vertices at the same angles, however thin the band."""
+    """Between two radii, however near they are to each other."""
     import shapely
 
     sagitta = fine_sagitta(grid)
@@ -99,5 +115,8 @@ def _band(grid: PolarGrid, inner: float, outer: float) -> Polygon:
         return shapely.Polygon(rim, [inner / outer * rim[::-1]] if inner > 0 else [])
     first, last = np.radians(grid.start), np.radians(grid.start + grid.span)
     rim = arc(outer, first, last, sagitta)
-    back = inner / outer * rim[::-1] if inner > 0 else np.zeros((1, 2))
+    if outer - inner > 10 * sagitta:  # a copy of the rim may have edges of a micrometre
+        back = arc(inner, last, first, sagitta)
+    else:  # vertices at the same angles, so that the two arcs can not cross
+        back = inner / outer * rim[::-1]
     return shapely.Polygon(np.concatenate([rim, back]))

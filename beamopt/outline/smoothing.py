@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.outline.rays import thin_places
-from beamopt.outline.ring import QUAD_SEGS, fine_sagitta, shrunk_ring
+from beamopt.outline.ring import fine_sagitta, quad_segs, shrunk_ring
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
 
@@ -29,6 +29,9 @@ MARGIN = 0.01
 
 NARROWEST = 0.05
 """mm; channels narrower than twice this go even where no corner is rounded."""
+
+LOCAL = 0.5
+"""mm; in wider offsets no edge is longer: GEOS drops corners that stand out by a hundredth."""
 
 CONTACT = 1e-3
 """mm; regions nearer to each other than this touch: no ray fits between them."""
@@ -90,7 +93,9 @@ def sealed_chambers(
 
 
 def _offset(geometry: Geometry, by: float) -> Geometry:
-    return geometry.buffer(by, quad_segs=QUAD_SEGS)
+    if abs(by) > LOCAL:  # a short edge beside a long one would turn all of it
+        geometry = geometry.segmentize(LOCAL)
+    return geometry.buffer(by, quad_segs=quad_segs(abs(by)))
 
 
 def _opened(geometry: Geometry, rounding: float) -> Region:
@@ -122,9 +127,8 @@ def _necks(regions: Sequence[Region], wall: float) -> Geometry | None:
     thin = thin_places(loops, (1 - MARGIN / 4) * wall, spacing=wall / 6, opposed=0.5)
     if not thin.thickness.size:
         return None
-    discs = shapely.buffer(
-        shapely.points(thin.middle), (1 + MARGIN) / 2 * wall, quad_segs=QUAD_SEGS
-    )
+    radius = (1 + MARGIN) / 2 * wall
+    discs = shapely.buffer(shapely.points(thin.middle), radius, quad_segs=quad_segs(radius))
     return shapely.union_all(discs)  # many that overlap: far faster than one offset of all
 
 

@@ -138,6 +138,27 @@ def test_touching_lobes_of_one_supply_are_no_polygons() -> None:
     assert outline.faults[0].status is FaultKind.INVALID
 
 
+@pytest.mark.parametrize("rules", [SealRules(), SealRules(1.0), SealRules(1.0, 0.0, 0.5), WALLED])
+@pytest.mark.parametrize("gap", [0.02, 0.01, 1e-3])
+def test_a_chamber_that_nearly_meets_itself(rules: SealRules, gap: float) -> None:
+    """Both ends of a ring piece, `gap` [degrees] from each other: 0.002 mm at 14 mm is no wall."""
+    outline = build_outline(RING, [RingPiece(1, (14, 18), (0, 360 - gap))], rules)
+    touching = found(outline, FaultKind.INVALID)
+    assert touching.supplies == (1,)
+    x, y = touching.place or (0, 0)
+    assert 14 < x < 18
+    assert y == pytest.approx(0, abs=0.01)
+    assert touching.value == pytest.approx(x * np.radians(gap), rel=0.05)
+    assert not outline.buildable
+
+
+@pytest.mark.parametrize("far", [1.0, 5.0, 8.0, 8.9])
+def test_a_sharp_corner_of_material_is_no_contact(far: float) -> None:
+    """Two circles that overlap leave a wedge of material on either side."""
+    shapes: list[Shape] = [Circle(1, (-far / 2, 17.5), 4.5), Circle(1, (far / 2, 17.5), 4.5)]
+    assert statuses(build_outline(RING, shapes, SealRules())) == [FaultKind.NO_CHAMBER] * 2
+
+
 def test_walls_and_skins_are_measured_and_named() -> None:
     shapes: list[Shape] = [
         Circle(1, (17, 0), 3.0),
