@@ -81,7 +81,7 @@ def bound_numbers(found: Certificate) -> dict[str, Any]:
     """All that was found, without times."""
     wanted, response = found.wanted, found.response
     if wanted is None or response is None:
-        return {"status": found.status.value}
+        return {**_ended(found)}
     parts: dict[str, Any] = {"response": _response_numbers(wanted, response)}
     parts["response"] |= {
         "matrix": [row.tolist() for row in response.matrix],
@@ -91,16 +91,20 @@ def bound_numbers(found: Certificate) -> dict[str, Any]:
         parts["proven"] = _proven(found.proven)
     if found.ring is not None:
         parts["ring"] = _ring(found.ring)
-    return {"status": found.status.value, "rows": len(wanted.tips), **parts}
+    return {**_ended(found), "rows": len(wanted.tips), **parts}
+
+
+def _ended(found: Certificate) -> dict[str, str]:
+    return {"status": found.status.value, "ended": found.status.name}
 
 
 def bound_summary(found: Certificate, loss: float) -> dict[str, Any]:
     """What a search's summary says of the bound, and how far a loss [mm²] is above it."""
     if found.wanted is None or found.response is None:
-        return {"status": found.status.value}
+        return {**_ended(found)}
     above = {"L_above": loss - found.response.loss} if math.isfinite(loss) else {}
     numbers = _response_numbers(found.wanted, found.response)
-    return {"status": found.status.value, **numbers, **above}
+    return {**_ended(found), **numbers, **above}
 
 
 def _response_numbers(wanted: Wanted, response: ResponseBound) -> dict[str, Any]:

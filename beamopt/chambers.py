@@ -17,9 +17,9 @@ Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=
 class Points(Model):
     """Voronoi feature points [mm]; type 0 is material, 1…3 a supply."""
 
-    x: list[Position]
-    y: list[Position]
-    type: list[Annotated[int, Field(strict=True, ge=0, le=3)]]
+    x: tuple[Position, ...]
+    y: tuple[Position, ...]
+    type: tuple[Annotated[int, Field(strict=True, ge=0, le=3)], ...]
 
     @model_validator(mode="after")
     def _same_length(self) -> Points:

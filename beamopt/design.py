@@ -54,7 +54,7 @@ class Design(Model):
     schema_: Literal["beamopt-design/1"] = Field(alias="schema")
     grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
     feature_points: Points | None = quantity(None, "x, y, type of every feature point")
-    drawing: list[DrawnChamber] | None = quantity(None, "a list of drawn chambers")
+    drawing: tuple[DrawnChamber, ...] | None = quantity(None, "a list of drawn chambers")
     wall_elements: WallElements = quantity(
         ..., "elements of a wall between supplies, even; none if sealed", low=0, high=64
     )
@@ -136,7 +136,7 @@ class Design(Model):
 
     @cached_property
     def findings(self) -> tuple[Fault, ...]:
-        """What is wrong with its section, and what of the file has no effect, the worst first.
+        """Faults of its section and parts of the file without effect, the worst first.
 
         Every command says these; sealed or not, skins, walls and openings are the outline's.
         """
@@ -154,10 +154,10 @@ class Design(Model):
         if self.drawing is None or self.seal.rules.sealed:
             return
         nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
-        told = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
+        found = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
         labels, (x, y) = self.section.labels, self.section.grid.centroids
         for number, shape in enumerate(chamber.build() for chamber in self.drawing):
-            if number not in told and not (labels[shape.covers(x, y)] == shape.supply).any():
+            if number not in found and not (labels[shape.covers(x, y)] == shape.supply).any():
                 yield Fault(FaultKind.LOST, supplies=(shape.supply,), drawn=number)
 
     @cached_property

@@ -104,7 +104,7 @@ class LineJournal:
         return InputError(self.path, key, before, f"{said}; name another folder, or ask alike")
 
     def damaged(self, number: int) -> InputError:
-        """What to raise where line `number`, from 1, can not be read."""
+        """Return the error to raise where line `number`, from 1, can not be read."""
         said = (
             f"no journal of a {self.kind}: the line is damaged or was changed; "
             "cut the file off before it to compute it, and what follows, again"

@@ -27,7 +27,8 @@ class Model(BaseModel):
     """Frozen, and unknown keys are refused.
 
     A copy holds the keys' values only: what a cached property has computed stays with the object
-    that computed it. This holds for `model_copy`, `copy.copy`, `copy.deepcopy` and `pickle`.
+    that computed it. This holds for `model_copy`, `copy`, `copy.copy`, `copy.deepcopy` and
+    `pickle`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
@@ -46,6 +47,10 @@ class Model(BaseModel):
         values = {alias[name]: getattr(bare, name) for name in self.model_fields_set}
         changes = {alias.get(name, name): value for name, value in update.items()}
         return parse(type(self), values | changes, type(self).__name__)
+
+    def copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # type: ignore[override]
+        """Copy as `model_copy` does; pydantic's own would take computed values along."""
+        return self.model_copy(update=update, deep=deep)
 
     def __getstate__(self) -> dict[Any, Any]:
         """Return the state to pickle, without cached values."""

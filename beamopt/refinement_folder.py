@@ -85,7 +85,7 @@ def becomes(folder: Path, best: str | None, found: Refinement | None) -> Earlier
     if not there.exists():
         return EarlierRefinement.NONE
     if not earlier.exists() or earlier.read_text(encoding="utf-8") != best:
-        return EarlierRefinement.SET_ASIDE if found is None else EarlierRefinement.REPLACED
+        return EarlierRefinement.SET_ASIDE
     if found is None:
         return EarlierRefinement.STAYS
     notes = load_design(there).notes
@@ -120,6 +120,7 @@ def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
     refined, rules = found.refined, scene.making.rules_set
     return {
         "status": refined.status.value,
+        "ended": refined.status.name,
         "before": _losses(refined.before, refined.ratio_before, rules),
         "after": _losses(refined.after, refined.ratio, rules),
         "faults": [str(fault) for fault in found.design.findings],
@@ -130,6 +131,6 @@ def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
 
 def _losses(verdict: Verdict, ratio: float, rules: bool) -> dict[str, Any]:
     if verdict.status is not Status.JUDGED:
-        return {"status": verdict.status.value}
+        return {"status": verdict.status.value, "ended": verdict.status.name}
     ruled = {"R": verdict.R} if rules else {}
     return {"L": verdict.L, "K": verdict.K, **ruled, "T": verdict.T, "neighbour_ratio": ratio}

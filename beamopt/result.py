@@ -28,13 +28,13 @@ __all__ = ["EarlierRefinement", "Optimisation"]
 
 
 class EarlierRefinement(Enum):
-    """What became of a refinement in the folder of a run; the value is the text for people."""
+    """Fate of a refinement in the folder of a run; the value is the text for people."""
 
     NONE = "there was none"
     REPLACED = "refined anew"
     STAYS = "refined.json stays: it is of this best design"
     BETTER = "refined.json stays: what was found now is not better"
-    SET_ASIDE = "refined.json was of an earlier best design and went to earlier-refinement"
+    SET_ASIDE = "refined.json was of an earlier best design and went to earlier-refinement-1, -2, …"
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,7 +85,7 @@ class RunFolder:
 
     @property
     def has_result(self) -> bool:
-        """Whether a search has ended here, or was interrupted and said so."""
+        """True if a search has ended here, or was interrupted and said so."""
         return (self.path / "provenance.json").exists()
 
     def check(self, scene: Scene) -> None:
@@ -148,9 +148,6 @@ class RunFolder:
             set_aside(self.path)
         stays = there in (EarlierRefinement.STAYS, EarlierRefinement.BETTER)
         numbers, times = self._of_refinement(result, stays)
-        if there is EarlierRefinement.REPLACED and not self._has("best.json", best):
-            for name in REFINEMENT_FILES:  # before the best design that they are not of
-                (self.path / name).unlink(missing_ok=True)
         changed = self._write_scene(result.scene, refined_as_before=stays)
         changed |= self._write_search(result, figures)
         if found is not None and not stays:
@@ -162,10 +159,6 @@ class RunFolder:
             made = {"seed": result.scene.search.seed, **provenance()}
             write_atomic(provenance_file, json_text(made))
         return there
-
-    def _has(self, name: str, text: str | None) -> bool:
-        file = self.path / name
-        return file.exists() and file.read_text(encoding="utf-8") == text
 
     def _write(self, name: str, text: str) -> bool:
         return write_changed(self.path / name, text)

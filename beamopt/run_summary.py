@@ -18,7 +18,7 @@ __all__ = ["summary"]
 
 
 def summary(result: Optimisation) -> dict[str, Any]:
-    """How a search ended and what it found, without refining and without times."""
+    """Return the ending and the results of a search, without refining and without times."""
     pieces = result.best.section.pieces
     return (
         {
@@ -72,7 +72,7 @@ def _outline(result: Optimisation) -> dict[str, Any]:
         return {}
     faults = [str(fault) for fault in result.best.findings]
     if not math.isfinite(result.outline_loss):
-        return {"outline": {"status": Status.NO_EQUILIBRIUM.value, "faults": faults}}
+        return {"outline": _ended(Status.NO_EQUILIBRIUM) | {"faults": faults}}
     rms = result.target.aim.rms_distance(result.outline_loss)
     return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
 
@@ -90,7 +90,12 @@ def _paths(result: Optimisation) -> dict[str, Any]:
 
 def _summary_of(verdict: Verdict, aim: Aim) -> dict[str, Any]:
     if verdict.status is not Status.JUDGED:
-        return {"status": verdict.status.value}
+        return _ended(verdict.status)
     rms = aim.rms_distance(verdict.L)
     losses = {"L": verdict.L, "K": verdict.K, "T": verdict.T, "rms_distance": rms}
-    return {"status": verdict.status.value, **losses}
+    return _ended(verdict.status) | losses
+
+
+def _ended(status: Status) -> dict[str, str]:
+    """The text for people, and the name for programs."""
+    return {"status": status.value, "ended": status.name}

@@ -17,7 +17,7 @@ OF_SEARCH = ("search", "evaluation", "compilation")
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """What one call of a search took.
+    """Duration of one call of a search.
 
     seconds : from the first section that it judged to the end [s]; what an earlier call had judged
         is not in it. judged : sections judged in that time.

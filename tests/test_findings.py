@@ -1,6 +1,7 @@
 """What is wrong with a section, or has no effect in it: one truth for every command."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -215,3 +216,49 @@ def test_a_check_says_them(faulty: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert any("separate pieces" in line for line in said)
     section = json.loads(Path("checked/summary.json").read_text())["section"]
     assert section["faults"] == [str(fault) for fault in load_design("two.json").findings]
+
+
+def test_baselines_say_them_of_designs_that_are_named(
+    faulty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the design's name where several are named."""
+    data = json.loads(faulty.read_text())
+    for name in ("open", "other"):  # of which there is no solid to wait for
+        Path(f"{name}.json").write_text(json.dumps(data | {"seal": {}}))
+    design = load_design("open.json")
+    assert FaultKind.HIDDEN in kinds(design)
+    here = ["--workers", "1"]
+    named = [
+        (["baseline", "open.json", "--out", "held", *here], sayings(design)),
+        (["regress", "open.json", "--baseline", "held", *here], sayings(design)),
+        (["regress", "--baseline", "held", *here], []),
+        (
+            ["baseline", "open.json", "other.json", "--out", "both", *here],
+            [
+                f"note: {name}: {line}"
+                for name in ("open", "other")
+                for line in summaries(design.findings)
+            ],
+        ),
+    ]
+    for arguments, expected in named:
+        assert run_femcheck(arguments) == 0
+        said = capsys.readouterr().err.splitlines()
+        assert [line for line in said if line.startswith("note: ")] == expected
+
+
+def test_a_front_says_them_of_what_it_prints(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    few = ["--population", "12", "--generations", "1", "--objectives", "L,mass"]
+    assert run(["pareto", "random-section", *few, "--out", "front"]) == 0
+    out, err = capsys.readouterr()
+    printed = dict.fromkeys(re.findall(r"\(index (\d+)\)", out))
+    expected = [
+        f"note: index {k}: {line}"
+        for k in printed
+        for line in summaries(load_design(f"front/front-{int(k):03d}.json").findings)
+    ]
+    assert expected
+    assert [line for line in err.splitlines() if line.startswith("note: ")] == expected

@@ -35,9 +35,13 @@ def random_candidates(scene: Scene, count: int = 12) -> list[FeaturePoints]:
 
 BEFORE = {
     "hand-drawn-section": ("search.generations=4", "798536b1b287e980", "5c5814031a6bba7f"),
-    "sealed-section": ("search.generations=2", "e87256cef42f4dd8", "9cd722512061cb39"),
+    "sealed-section": ("search.generations=2", "1382009b12faf7cd", "19a6f09a51faaf0e"),
 }
-"""Scene: generations, digests of history and journal as written before there were rules."""
+"""Scene: generations, digests of history and journal as written without rules.
+
+Those of `sealed-section` are of a target whose polygons have the area of the curves: L of its first
+population is 0.2 % lower than with vertices on the curves, K the same.
+"""
 
 
 @pytest.mark.parametrize("name", BEFORE)

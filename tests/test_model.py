@@ -20,7 +20,7 @@ from beamopt.actuator import Actuator, Loading, RodRules
 from beamopt.design import Design, Grid, load_design
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.model import Model
-from beamopt.scene import Pressures, Scene, SectionRules
+from beamopt.scene import Pressures, Scene, SectionRules, load_scene
 from beamopt.seal import Seal
 from tests.test_design import DRAWN
 
@@ -162,3 +162,21 @@ def test_a_copy_keeps_the_shape_that_a_chamber_was_given_in() -> None:
     with pytest.raises(InputError):
         piece.model_copy(update={"radius": 2.0})
     assert isinstance(DESIGN.model_copy(update={"drawing": [piece]}), Design)
+
+
+def test_the_copy_that_pydantic_names_copy_is_no_other() -> None:
+    design = DESIGN.model_copy()
+    stiff = design.actuator.model_copy(update={"youngs_modulus": 600.0, "shear_modulus": 200.0})
+    before = design.workspace.tips
+    changed = design.copy(update={"actuator": stiff})
+    assert not np.allclose(changed.workspace.tips, before)
+    assert same(changed.workspace, design.model_copy(update={"actuator": stiff}).workspace)
+
+
+def test_what_a_section_is_made_of_can_not_be_changed_in_place() -> None:
+    """A list could be, and computed values would stay."""
+    scene = load_scene("random-section", ["section.feature_points=5"])
+    design = scene.design_of(scene.random_points(np.random.default_rng(1)))
+    assert design.feature_points is not None
+    for values in (design.feature_points.x, design.feature_points.type, DESIGN.drawing):
+        assert isinstance(values, tuple)

@@ -146,3 +146,38 @@ def test_what_once_stood_here_is_found(source: str) -> None:
 )
 def test_what_is_meant_is_not_found(source: str) -> None:
     assert findings(source) == []
+
+
+def nameless(source: str) -> list[str]:
+    """Tables and records that have a status as a text alone, a line each."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Constant(value=str(header)) if "status" in header.split(",")[1:]:
+                named = "ended" in header.split(",")
+            case ast.Dict(keys=keys, values=values):
+                texts = {
+                    key.value: _is_value(value)
+                    for key, value in zip(keys, values, strict=True)
+                    if isinstance(key, ast.Constant)
+                }
+                named = not texts.get("status") or "ended" in texts
+            case _:
+                continue
+        if not named:
+            found.append(f"line {node.lineno}: {ast.unparse(node)}")
+    return found
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_status_has_its_name_beside_its_text(path: Path) -> None:
+    """Programs read `ended`; `status` may be worded anew."""
+    assert nameless(path.read_text(encoding="utf-8")) == []
+
+
+def test_a_text_alone_is_found() -> None:
+    assert nameless('HEADER = "scene,error,status"')
+    assert nameless("said = {'status': verdict.status.value, 'L': 1.0}")
+    assert not nameless('HEADER = "scene,status,ended"')
+    assert not nameless("said = {'status': one.value, 'ended': one.name}")
+    assert not nameless("row['status']")

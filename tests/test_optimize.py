@@ -272,6 +272,7 @@ def test_nothing_but_air_is_a_result_that_says_so(tmp_path: Path) -> None:
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["status"] == "no candidate could be judged"
     assert summary["best"]["status"] == "the section has no material"
+    assert (summary["ended"], summary["best"]["ended"]) == ("NOTHING", "NO_MATERIAL")
     assert not (tmp_path / "run" / "best.json").exists()
     with pytest.raises(InputError, match="no material"):
         optimize(load_scene("random-section", keys))

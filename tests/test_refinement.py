@@ -16,6 +16,7 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.folder import design_file
 from beamopt.optimisation import optimize
+from beamopt.outline.faults import summaries
 from beamopt.refine.refine import RefineStatus
 from beamopt.refine.truth import View, judged_on
 from beamopt.refinement import refine_design
@@ -58,6 +59,7 @@ def test_what_a_refinement_says_of_itself(finished) -> None:
     found = result.refinement
     assert found is not None
     said = json.loads((folder / "summary.json").read_text())["refinement"]
+    assert said["ended"] == RefineStatus.REFINED.name
     assert said["before"]["L"] == result.verdict.L
     assert said["after"]["L"] == found.refined.after.L
     weight = result.scene.search.neighbour_weight
@@ -183,6 +185,21 @@ def test_a_search_that_goes_on_sets_aside_what_was_refined_of_an_earlier_best(
     assert "refinement" not in json.loads((folder / "summary.json").read_text())
 
 
+def test_a_refinement_of_an_earlier_best_is_set_aside_where_the_new_one_is_refined_too(
+    tmp_path: Path,
+) -> None:
+    folder, keys = tmp_path / "run", [*KEYS, *SHORT, "refine.finish=true"]
+    optimize(load_scene("hand-drawn-workspace", keys), folder, figures=False)
+    refined = {name: one for name, one in content(folder).items() if name in REFINEMENT_FILES}
+    longer = load_scene("hand-drawn-workspace", [*keys, "search.generations=5"])
+    result = optimize(longer, folder, resume=True, figures=False)
+    assert result.there is EarlierRefinement.SET_ASIDE
+    assert content(folder / "earlier-refinement-1") == refined
+    assert design_file(folder).name == "refined.json"
+    assert result.refinement is not None
+    assert load_design(folder / "refined.json").json() == result.refinement.design.json()
+
+
 @pytest.mark.parametrize("asked", [(), ("--refine",)], ids=["search", "search and refining"])
 def test_resuming_a_finished_run_changes_no_byte(
     asked: tuple[str, ...], finished, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -193,13 +210,18 @@ def test_resuming_a_finished_run_changes_no_byte(
     words = ["optimize", "hand-drawn-workspace", "--out", str(folder), "--resume", *asked]
     assert run([*words, *SETTINGS]) == 0
     assert everything(folder) == before
-    said = capsys.readouterr().out
+    said, notes = capsys.readouterr()
     assert (EarlierRefinement.STAYS.value in said) is (not asked)
+    findings = summaries(load_design(design_file(folder)).findings)
+    assert findings != summaries(load_design(folder / "best.json").findings)
+    assert notes.splitlines() == [f"note: {line}" for line in findings]
     assert run(["refine", str(folder)]) == 0
     assert everything(folder) == before
 
 
-def test_a_worse_refinement_takes_no_better_ones_place(finished, tmp_path: Path) -> None:
+def test_a_worse_refinement_takes_no_better_ones_place(
+    finished, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = Path(shutil.copytree(finished[0], tmp_path / "run"))
     before = everything(folder)
     less = ("refine.rounds=1", "refine.flips=0", "refine.steps=0", "refine.finish=true")
@@ -207,6 +229,11 @@ def test_a_worse_refinement_takes_no_better_ones_place(finished, tmp_path: Path)
     result = optimize(scene, folder, resume=True)
     assert result.there is EarlierRefinement.BETTER
     assert everything(folder) == before
+    findings = summaries(load_design(design_file(folder)).findings)
+    assert result.refinement is not None
+    assert findings != summaries(result.refinement.design.findings)
+    assert run(["refine", str(folder), *(f"--set={key}" for key in less[:3])]) == 0
+    assert capsys.readouterr().err.splitlines() == [f"note: {line}" for line in findings]
 
 
 def test_a_better_refinement_takes_the_place_with_its_settings(tmp_path: Path) -> None:

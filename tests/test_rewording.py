@@ -35,10 +35,10 @@ from femcheck.continuation.outcome import Status
 from femcheck.models.reply import Reply
 from femcheck.models.solid import SolidModel
 from femcheck.regression.baseline import read_baseline, write_baseline
-from femcheck.regression.held import LADDER
+from femcheck.regression.held import LADDER, is_late
 from femcheck.regression.held_design import find_design
 from femcheck.regression.measure import Measured as MeasuredRungs
-from femcheck.regression.moved import compare, is_late
+from femcheck.regression.moved import compare
 from femcheck.regression.run import regress
 from femcheck.report.folders import Kind as FolderKind
 from femcheck.report.run_view import view_of
@@ -202,7 +202,7 @@ def test_a_baseline_holds_whatever_its_statuses_are_called(tmp_path: Path) -> No
         assert compare("d", base, now) == []
         other = {name: Ended(Status.TIME_OUT) for name in rows}
         moved = compare("d", base, MeasuredRungs((held(other, "beam"),)))
-        assert all(map(is_late, moved))
+        assert all(is_late(one.now) for one in moved)
     assert {one.row for one in moved} == set(rows) - {"TIME_OUT"}
     assert {entry.rung for entry in read_baseline(file).held} <= set(LADDER)
 

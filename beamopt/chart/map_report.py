@@ -19,8 +19,10 @@ from beamopt.provenance import provenance
 
 __all__ = ["NAMES", "write_map"]
 
-ANSWERS = "kind,size,slenderness,seed,method,resolution,verdict,status,distance,seconds"
-TRUTHS = "seed,kind,size,slenderness,witness,truth,gap"
+ANSWERS = (
+    "kind,size,slenderness,seed,method,resolution,verdict,judged,status,ended,distance,seconds"
+)
+TRUTHS = "seed,kind,size,slenderness,witness,truth,gap,known_by,ended"
 NAMES = (
     *("stability.csv", "truth.csv", "success.csv", "reading.md", "provenance.json"),
     *(f"{figure}.{ending}" for figure in ("stability", "slenderness") for ending in ("svg", "png")),
@@ -44,8 +46,8 @@ def _answers_csv(samples: Sequence[Sample]) -> str:
     rows = [
         (
             *(row.case.kind.value, row.case.size, row.case.slenderness, row.case.index),
-            *(row.method, row.resolution, row.verdict.value, row.status.value),
-            *(_rounded(row.distance), _rounded(row.seconds)),
+            *(row.method, row.resolution, row.verdict.value, row.verdict.name),
+            *(row.status.value, row.status.name, _rounded(row.distance), _rounded(row.seconds)),
         )
         for sample in samples
         for row in sample.rows
@@ -57,7 +59,8 @@ def _truths_csv(samples: Sequence[Sample]) -> str:
     rows = []
     for one in samples:
         case, truth = one.case, (one.witness.value, one.truth.value, _rounded(one.gap))
-        rows.append((case.index, case.kind.value, case.size, case.slenderness, *truth))
+        names = one.witness.name, one.truth.name
+        rows.append((case.index, case.kind.value, case.size, case.slenderness, *truth, *names))
     return csv_text(TRUTHS, rows)
 
 

@@ -28,7 +28,7 @@ from beamopt.scene import Scene
 
 __all__ = ["Chart", "run_chart"]
 
-HEADER = "scene,method,resolution,error_mm,seconds,converged,of,status"
+HEADER = "scene,method,resolution,error_mm,seconds,converged,of,status,ended"
 BOUNDS = (1e-3, 1e-6)  # mm
 
 
@@ -111,7 +111,7 @@ def _write(chart: Chart, out: Path, seed: int | None) -> None:
     cells = [
         (
             *(chart.scene, row.method, row.resolution, _known(row.error), _known(row.seconds)),
-            *(row.converged, row.of, row.status.value),
+            *(row.converged, row.of, row.status.value, row.status.name),
         )
         for row in chart.rows
     ]

@@ -21,8 +21,6 @@ ELEMENTS = 128  # and twice as many where that is not enough
 MOST_ITERATIONS = 10_000  # of the elements; four seconds with `ELEMENTS` of them
 SAME = 0.005  # tips so little apart agree
 SAME_LOAD = 0.1  # of each other: shares of the load up to which there is an equilibrium
-ENDS = (RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED)
-"""What ends a path of stable equilibria; other statuses are a method's own trouble."""
 
 NONE: FloatArray = np.full(3, np.nan)
 
@@ -51,7 +49,8 @@ def true_equilibrium(rod: Rod, rest: FloatArray) -> Truth:
         (fine, refined, coarse, Witness.ELEMENTS),
         (refined, fine, modes, Witness.MODES),
     ):
-        in_trouble = other.status[0] not in (RodStatus.CONVERGED, *ENDS)
+        ended = other.status[0]
+        in_trouble = ended is not RodStatus.CONVERGED and not ended.is_physical
         gap = apart(own.tips[0], coarser.tips[0], rod.length)
         if in_trouble and gap <= SAME:
             return Truth(witness, own.status[0], own.tips[0], gap)
@@ -66,8 +65,8 @@ def compared(modes: RodSolution, elements: RodSolution, length: float) -> Truth:
         return Truth(Witness.BOTH if gap <= SAME else Witness.NEITHER, one, modes.tips[0], gap)
     a, b = float(modes.factor[0]), float(elements.factor[0])
     same_load = abs(a - b) <= SAME_LOAD * max(a, b)
-    status = one if one in ENDS else other
-    known = status in ENDS and (same_load or one is other is RodStatus.CRUSHED)
+    status = one if one.is_physical else other
+    known = status.is_physical and (same_load or one is other is RodStatus.CRUSHED)
     return Truth(Witness.BOTH if known else Witness.NEITHER, status, NONE, np.nan)
 
 

@@ -38,7 +38,7 @@ NOTHING = 1e-12  # of H²: less than this is rounding
 
 
 class LengthSource(Enum):
-    """Where the length of a bare table's actuator comes from; the value is the text for people."""
+    """Source of the length of a bare table's actuator; the value is the text for people."""
 
     REST = "the table's tip without pressure"
     ASKED = "--set actuator.length"
@@ -124,8 +124,11 @@ def _with_length(
     if not at_rest.any() or scene.climb.model.straight_length is None:
         return usual, LengthSource.DEFAULT
     tips = scene.target.base.to_local(table.stacked(["x", "y", "z"])[at_rest])
+    length = float(tips[:, 2].mean())
+    if length < scene.grid.outer_radius:  # no rod: a table in metres, say
+        return usual, LengthSource.DEFAULT
     try:
-        actuator = usual.actuator.model_copy(update={"length": float(tips[:, 2].mean())})
+        actuator = usual.actuator.model_copy(update={"length": length})
     except InputError:
         return usual, LengthSource.DEFAULT
     return usual.model_copy(update={"actuator": actuator}), LengthSource.REST

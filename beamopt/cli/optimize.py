@@ -14,8 +14,10 @@ from beamopt.cli.bound import gap_text
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
+from beamopt.design import load_design
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
+from beamopt.folder import design_file
 from beamopt.judge import Status
 from beamopt.optimisation import optimize
 from beamopt.reach.reach import TOLERANCE
@@ -95,8 +97,7 @@ def _report(result: Optimisation, folder: Path) -> None:
     for name, text in lines:
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if result.verdict.status is Status.JUDGED:
-        refined = result.refinement
-        say_findings(result.best if refined is None else refined.design)
+        say_findings(load_design(design_file(folder)))
 
 
 def _found(result: Optimisation) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
@@ -87,12 +88,10 @@ def _not_installed(error: ImportError) -> InputError:
 def _report(front: Front, folder: Path) -> None:
     lines = [("ended", f"{front.status.value}; {front.evaluations} sections judged")]
     lines.append(("front", f"{len(front.designs)} designs, of which none beats another"))
+    shown = _shown(front)
     if front.designs:
-        values = front.values
-        lowest = values.argmin(axis=0)
-        places = {BEST[name]: k for name, k in zip(front.objectives, lowest, strict=True)}
-        for said, k in (places | {"knee" if front.bends else "middle": front.knee}).items():
-            reached = zip(front.objectives, values[k], strict=True)
+        for said, k in shown.items():
+            reached = zip(front.objectives, front.values[k], strict=True)
             text = ", ".join(f"{name} {value:.4g}" for name, value in reached)
             lines.append((said, f"{text}   (index {k})"))
         lines.append(("bound", gap_text(front.bound, front.lowest_loss)))
@@ -106,3 +105,14 @@ def _report(front: Front, folder: Path) -> None:
     console.print(f"[bold]{front.scene.name}[/], seed {front.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<16}{text}", soft_wrap=True, markup=False)
+    for k in dict.fromkeys(shown.values()):
+        say_findings(front.scene.design_of(front.designs[k].points), f"index {k}")
+
+
+def _shown(front: Front) -> dict[str, int]:
+    """Places on the front of the lowest of each objective and of the knee, by their names."""
+    if not front.designs:
+        return {}
+    lowest = front.values.argmin(axis=0).tolist()
+    places = {BEST[name]: k for name, k in zip(front.objectives, lowest, strict=True)}
+    return places | {"knee" if front.bends else "middle": front.knee}

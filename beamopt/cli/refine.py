@@ -51,7 +51,7 @@ def refine_command(
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
         raise typer.Exit(1)
-    say_findings(found.design)
+    say_findings(load_design(folder / "refined.json"))
 
 
 def _refined_run(

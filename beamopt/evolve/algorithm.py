@@ -18,7 +18,7 @@ __all__ = ["Generation", "GeneticAlgorithm", "Individual", "Stage"]
 
 
 class Stage(Enum):
-    """What the candidates asked for are; the value is the text shown to people."""
+    """Kind of the candidates asked for; the value is the text shown to people."""
 
     INITIAL = "initial"
     OFFSPRING = "offspring"

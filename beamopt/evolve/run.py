@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
@@ -82,7 +82,7 @@ def run(
     if ready is not None:
         ready()
     before = search.evaluations
-    compiling = _compiling(judge, improvement, scene, search) if reason is None else 0.0
+    compiling = _compiling(judge, scene, search) if reason is None else 0.0
     asking = time.perf_counter()
     try:
         while reason is None:
@@ -101,16 +101,18 @@ def run(
     return Ended(status, tuple(history), Timing(seconds, judged, compiling))
 
 
-def _compiling(
-    judge: Judge, improvement: Improvement | None, scene: Scene, search: GeneticAlgorithm
-) -> float:
-    """Run every kernel once, so that none is compiled while sections are timed; returns seconds."""
+def _compiling(judge: Judge, scene: Scene, search: GeneticAlgorithm) -> float:
+    """Run every kernel once, so that none is compiled while sections are timed; returns seconds.
+
+    On a judge of its own: one that counts its calls counts those of the search only.
+    """
     started = time.perf_counter()
+    own = Judge(**{each.name: getattr(judge, each.name) for each in fields(Judge)})
     candidates = search.ask()[:1]
-    judge(candidates)
+    own(candidates)
     Variation(scene).warm_up()
-    if improvement is not None:
-        improvement(candidates[0], 0, 0)
+    if scene.search.improved_share > 0:
+        Improvement(own, scene)(candidates[0], 0, 0)
     return time.perf_counter() - started
 
 

@@ -24,7 +24,7 @@ class StopReason(Enum):
 
     @property
     def goes_on(self) -> bool:
-        """Whether the search is not over: the same command with --resume continues it."""
+        """True if the search is not over: the same command with --resume continues it."""
         return self in (StopReason.INTERRUPTED, StopReason.SECONDS)
 
 

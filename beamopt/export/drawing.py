@@ -64,7 +64,7 @@ class Drawing:
 
 
 def is_thinner(least: float | None, asked: float) -> bool:
-    """Whether a least skin or wall is so much thinner than asked that a person should know."""
+    """True if a least skin or wall is so much thinner than asked that a person should know."""
     return least is not None and least < SAME * asked
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -119,7 +118,8 @@ def export_design(
     mould = mould_solids(faces, grid, length, sagitta, options.base_thickness)
     drawing = section_drawing(design, faces, name, sagitta, options.cap)
     _check_owner(folder, name)
-    files = dict(_contents(drawing, body, mould, formats))
+    strict = options.formats is not None
+    files, failed = _contents(drawing, body, mould, formats, all_or_none=strict)
     record = export_record(
         name,
         design,
@@ -133,7 +133,7 @@ def export_design(
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
     notes = notes_on(design, drawing, sagitta, findings)
-    return Exported(folder, sizes, (*left_out, *notes))
+    return Exported(folder, sizes, (*left_out, *failed, *notes))
 
 
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -165,8 +165,19 @@ def _check_owner(folder: Path, name: str) -> None:
 
 
 def _contents(
-    drawing: Drawing, body: tuple[Solid, ...], mould: tuple[Solid, ...], formats: tuple[str, ...]
-) -> Iterator[tuple[str, bytes]]:
+    drawing: Drawing,
+    body: tuple[Solid, ...],
+    mould: tuple[Solid, ...],
+    formats: tuple[str, ...],
+    *,
+    all_or_none: bool,
+) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """The files by name, and a line on each format whose package does not load or fails.
+
+    Raises
+    ------
+    InputError : a format failed, and `all_or_none` is set.
+    """
     title = drawing.title
     makers = {
         "body.step": lambda: step_text(body, f"{title} body").encode("latin-1"),
@@ -176,9 +187,19 @@ def _contents(
         "section.svg": lambda: svg_text(drawing).encode(),
         "section.dxf": lambda: dxf_bytes(drawing),
     }
+    files: dict[str, bytes] = {}
+    failed: dict[str, str] = {}
     for file, form in FILES.items():
-        if form in formats:
-            yield file, makers[file]()
+        if form not in formats or form in failed:
+            continue
+        try:
+            files[file] = makers[file]()
+        except InputError as error:
+            if all_or_none:
+                raise
+            failed[form] = f"{form} is left out: {error}"
+    made = {file: text for file, text in files.items() if FILES[file] not in failed}
+    return made, tuple(failed.values())
 
 
 def _write(folder: Path, files: dict[str, bytes], record: str) -> None:

@@ -103,11 +103,11 @@ def _at_usual_size(
     thinnest = USUAL_RADIUS - THINNEST * USUAL_RADIUS
     ring = replace(grid, inner_radius=min(inner, thinnest), outer_radius=USUAL_RADIUS)
     area = rules.smallest_chamber / size**2
-    kept = SealRules(skin, wall, rounding, area, rules.remove_islands)
+    usual = SealRules(skin, wall, rounding, area, rules.remove_islands)
     if isinstance(source, FeaturePoints):
         x, y = (np.rint(a / size / LATTICE) * LATTICE for a in (source.x, source.y))
-        return ring, FeaturePoints(x, y, source.type), kept
-    return ring, [_usual_shape(shape, size) for shape in source], kept
+        return ring, FeaturePoints(x, y, source.type), usual
+    return ring, [_usual_shape(shape, size) for shape in source], usual
 
 
 def _usual(length: float, size: float) -> float:

@@ -109,7 +109,8 @@ class Fault:
         numbers = " and ".join(str(supply) for supply in self.supplies)
         many = "supplies" if len(self.supplies) > 1 else "supply"
         thickness = _millimetres(self.value)
-        drawn = "a drawn chamber" if self.drawn is None else f"drawing[{self.drawn}]"
+        chamber = "a drawn chamber" if self.drawn is None else f"drawing[{self.drawn}]"
+        drawn = f"{chamber} ({many} {numbers})"
         match self.status:
             case FaultKind.SKIN:
                 return f"skin over {many} {numbers} is {thickness}"
@@ -133,11 +134,11 @@ class Fault:
                 return f"polygons of {many} {numbers} touch" if numbers else "polygons touch"
             case FaultKind.CUT:
                 outside = f"{self.value:.3g} mm² of it lie outside, cut"
-                return f"{drawn} ({many} {numbers}) is cut by a surface: {outside}"
+                return f"{drawn} is cut by a surface: {outside}"
             case FaultKind.HIDDEN:
-                return f"{drawn} ({many} {numbers}) is hidden under later chambers"
+                return f"{drawn} is hidden under later chambers"
             case FaultKind.LOST:
-                return f"{drawn} ({many} {numbers}) is no part of the section"
+                return f"{drawn} is no part of the section"
             case FaultKind.WALL_ELEMENTS:
                 said = "has no effect: a sealed section has its walls in mm (seal.wall)"
                 return f"wall_elements = {self.value:.0f} {said}"

@@ -39,7 +39,7 @@ def fine_sagitta(grid: PolarGrid) -> float:
 
 
 def usual_sagitta(grid: PolarGrid) -> float:
-    """How far the edges of a design's outline may be from the smooth one [mm]: 40 µm at 25 mm."""
+    """Largest distance of a design's outline from the smooth one [mm]: 40 µm at 25 mm."""
     return 1.6e-3 * grid.outer_radius
 
 

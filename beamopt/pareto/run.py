@@ -32,7 +32,7 @@ __all__ = ["POPULATION", "find_front"]
 
 POPULATION = 100
 
-Told = Callable[[FrontRecord], None]
+Callback = Callable[[FrontRecord], None]
 
 
 def find_front(
@@ -44,7 +44,7 @@ def find_front(
     resume: bool = False,
     executor: Executor | None = None,
     workers: int = 1,
-    callback: Callable[[FrontRecord], None] | None = None,
+    callback: Callback | None = None,
     figures: bool = True,
 ) -> Front:
     """Search for designs of which none is better than another in all objectives.
@@ -83,15 +83,15 @@ def find_front(
         judged = partial(scored, judge)
         evaluate = partial(in_parts, judged, executor=executor, workers=workers)
 
-        def told(record: FrontRecord) -> None:
+        def add(record: FrontRecord) -> None:
             history.append(record)
             if callback is not None:
                 callback(record)
 
-        _replay(search, journal, told)
+        _replay(search, journal, add)
         if folder is not None:
             begin_folder(folder, scene)
-        done, timing = _run(search, scene, evaluate, journal, told)
+        done, timing = _run(search, scene, evaluate, journal, add)
         ended = StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
         front = Front(
             status=ended if done else StopReason.INTERRUPTED,
@@ -117,10 +117,10 @@ def _check_length(journal: FrontJournal, scene: Scene) -> None:
         raise InputError(journal.path, "search.generations", asked, said)
 
 
-def _replay(search: FrontSearch, journal: FrontJournal | None, told: Told) -> None:
+def _replay(search: FrontSearch, journal: FrontJournal | None, record: Callback) -> None:
     """Tell the search what is on record."""
     for scores in journal.replay(search) if journal is not None else ():
-        told(search.tell(scores))
+        record(search.tell(scores))
 
 
 def _run(
@@ -128,7 +128,7 @@ def _run(
     scene: Scene,
     evaluate: Callable[[Sequence[FeaturePoints]], list[Score]],
     journal: FrontJournal | None,
-    told: Told,
+    record: Callback,
 ) -> tuple[bool, Timing]:
     """Ask, judge and tell until all generations are done; says whether they are."""
     before, compiling, generations = search.evaluations, 0.0, scene.search.generations
@@ -143,7 +143,7 @@ def _run(
             scores = evaluate(search.ask())
             if journal is not None:
                 journal.write(search, scores)
-            told(search.tell(scores))
+            record(search.tell(scores))
         done = True
     except KeyboardInterrupt:
         if search.generation == 0:

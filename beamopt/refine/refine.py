@@ -104,8 +104,8 @@ def refine(
 
     Raises
     ------
-    ValueError : sections are sealed, and a feature point that has a cell is farther than 10⁶ mm
-        from the axis.
+    ValueError : sections are sealed, and a feature point that has a cell is farther than 4·10⁶
+        outer radii from the axis.
     """
     settings = settings or Refining()
     sealed = judge.rules.sealed

@@ -10,23 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
-from beamopt.rod.balance import reaction_of, unknown_count
-from beamopt.rod.newton import evaluate, is_stable
-from beamopt.rod.packed import pack, stations_of
+from beamopt.rod.path_system import BEND, MOST_ITERATIONS, PathState, PathSystem
 from beamopt.rod.rod import Rod
-from beamopt.rod.shape import empty_shape
-from beamopt.rod.tangent import tangent_into
 
 __all__ = ["CriticalKind", "CriticalPoint", "LoadPath", "PathStatus", "Stretch", "follow_path"]
 
-CLOSE = 1e-9  # of the step, where an iteration has arrived
-ROUNDING = 1e-11  # rad, or share of the load; near a critical point no iteration comes nearer
 AT_REST = 1e-6  # of the length, or rad, that a held tip may be off at rest
-MOST_ITERATIONS = 12
 EASY, HARD = 4, 7  # iterations that make the next step longer or shorter
 SMALLEST, LARGEST = 1e-5, 8.0  # steps, as multiples of the first one
-DRIFT = 0.5  # of a step, that its equilibrium may be off the tangent that led there
-BEND = 0.8  # cosine between successive tangents at least
 HALVINGS = 20  # of a step in which a critical point lies
 MEET = 1e-3  # of the step, how near the equilibria on both sides of a critical point come
 
@@ -40,7 +31,7 @@ class PathStatus(Enum):
 
 
 class CriticalKind(Enum):
-    """What happens where the tangent is singular; the value is the text shown to people."""
+    """Kind of a point where the tangent is singular; the value is the text shown to people."""
 
     LIMIT = "the load has an extremum along the path"
     BIFURCATION = "another branch crosses the path"
@@ -158,7 +149,7 @@ def follow_path(
     ------
     ValueError : a tip that is held elsewhere than where it is without loads.
     """
-    system = _System(rod, modes)
+    system = PathSystem(rod, modes)
     here = np.zeros(system.size)
     if np.abs(system.residual(here, 0.0)).max() > AT_REST * rod.length:
         raise ValueError("tip: must be held where it is without loads")
@@ -199,48 +190,15 @@ def follow_path(
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
-    """An equilibrium on a path.
-
-    here : (n,) unknowns, scaled. at : factor of the loads. direction : (n + 1,) unit tangent,
-    onwards. unstable : see `LoadPath`. sign : of the determinant of the tangent bordered by load
-    and direction, which changes at bifurcations and not at limits. iterations : that it took.
-    """
-
-    here: FloatArray
-    at: float
-    direction: FloatArray
-    ends: FloatArray
-    stable: bool
-    unstable: int
-    sign: float
-    iterations: int
-
-    @property
-    def place(self) -> FloatArray:
-        """(n + 1,) unknowns and factor."""
-        return np.append(self.here, self.at)
-
-    def turns(self, other: _State) -> bool:
-        """Whether the load has an extremum between here and there."""
-        return bool(self.direction[-1] * other.direction[-1] < 0)
-
-    def parted(self, other: _State) -> bool:
-        """Whether there is more between here and there than a limit point or nothing."""
-        change = abs(other.unstable - self.unstable)
-        return self.sign * other.sign < 0 or change != self.turns(other)
-
-
-@dataclass(frozen=True, eq=False)
 class _Taken:
     """A step that counts: where it leads, how long it is, and the critical point that it passes."""
 
-    point: _State
+    point: PathState
     length: float
     event: CriticalPoint | None = None
 
 
-def _step(system: _System, here: _State, length: float) -> _Taken | None:
+def _step(system: PathSystem, here: PathState, length: float) -> _Taken | None:
     """A step of a length, or a shorter one up to where the path turns; None where none is found."""
     ahead = system.ahead(here, length)
     if ahead is None:
@@ -268,7 +226,7 @@ def _step(system: _System, here: _State, length: float) -> _Taken | None:
     return _Taken(far, high, CriticalPoint(kind, far.at, far.ends, 0, directions))
 
 
-def _limit(system: _System, here: _State, ahead: _State, length: float) -> CriticalPoint:
+def _limit(system: PathSystem, here: PathState, ahead: PathState, length: float) -> CriticalPoint:
     """The extremum of the load within a step, by the zero of the tangent's share of the load."""
     low, high, near, far = 0.0, length, here, ahead
     for _ in range(MOST_ITERATIONS):
@@ -287,126 +245,3 @@ def _limit(system: _System, here: _State, ahead: _State, length: float) -> Criti
     best = min(near, far, key=lambda one: abs(one.direction[-1]))
     directions = ahead.unstable - here.unstable
     return CriticalPoint(CriticalKind.LIMIT, best.at, best.ends, 0, directions)
-
-
-class _System:
-    """Residual and tangent of a rod's first case, in unknowns scaled to angles."""
-
-    def __init__(self, rod: Rod, modes: int) -> None:
-        self.rod, self.rest = pack(rod), rod.rest
-        self.conservative = rod.is_conservative
-        self.at = stations_of(tuple(one.length for one in rod.segments), modes)
-        self.shape = empty_shape(len(self.at.at), len(rod.segments), len(self.at.step))
-        self.size = unknown_count(self.rod, self.at)
-        bending = float(np.max(np.abs(self.rod.bending[:, rod.free, rod.free])))
-        amplitudes = modes * len(rod.segments) * len(rod.free)
-        hinges = amplitudes + len(rod.base.hinges)
-        self.held = self.size - hinges
-        self.scale = np.full(self.size, 1 / rod.length)
-        self.scale[amplitudes:hinges] = 1.0
-        self.scale[hinges : hinges + 3] = bending / rod.length**2  # forces, then moments
-        self.scale[hinges + 3 :] = bending / rod.length
-        if rod.tip.position is None:
-            self.scale[hinges:] = bending / rod.length
-        # a held tip is held where it is all along, not led there
-        self.start = self.rod.held_position[0] if len(self.rod.held_position) else np.zeros(3)
-        self.turn = np.zeros(3)
-
-    def residual(self, scaled: FloatArray, factor: float) -> FloatArray:
-        out = np.empty(self.size)
-        unknowns = scaled * self.scale
-        held = (self.rod, self.at, self.rest, self.start, self.turn)
-        evaluate(*held, factor, unknowns, self.shape, out)
-        return np.asarray(out * self.scale)
-
-    def tangent(self, scaled: FloatArray, factor: float) -> FloatArray:
-        """(n, n) by the unknowns, at the shape of the last residual."""
-        out = np.empty((self.size, self.size))
-        reaction = reaction_of(self.rod, self.at, scaled * self.scale)
-        tangent_into(self.rod, self.at, self.shape, factor, reaction, out)
-        return np.asarray(out * self.scale[:, None] * self.scale)
-
-    def by_load(self, scaled: FloatArray, factor: float) -> FloatArray:
-        """(n,) derivative by the factor, in which the residual is quadratic; the shape is at it."""
-        above, below = self.residual(scaled, factor + 1.0), self.residual(scaled, factor - 1.0)
-        self.residual(scaled, factor)
-        return (above - below) / 2
-
-    def state(
-        self, scaled: FloatArray, factor: float, before: FloatArray | None, iterations: int = 0
-    ) -> _State:
-        """The equilibrium with all that a path needs to know of it.
-
-        before : (n + 1,) tangent of the path before; None at rest, where the load grows.
-        """
-        load = self.by_load(scaled, factor)
-        tangent, ends = self.tangent(scaled, factor), self.shape.end_position.copy()
-        ahead = np.append(np.zeros(self.size), 1.0) if before is None else before
-        matrix = np.column_stack([tangent, load])
-        found = np.linalg.solve(np.vstack([matrix, ahead]), np.append(np.zeros(self.size), 1.0))
-        direction = found / np.linalg.norm(found)
-        sign = float(np.linalg.slogdet(np.vstack([matrix, direction]))[0])
-        stable, unstable = self._stability(tangent)
-        return _State(scaled, factor, direction, ends, stable, unstable, sign, iterations)
-
-    def _stability(self, tangent: FloatArray) -> tuple[bool, int]:
-        """Whether the potential has a minimum, and the directions in which it falls."""
-        if self.conservative:
-            values = np.linalg.eigvalsh((tangent + tangent.T) / 2)
-            unstable = max(int((values < 0).sum()) - self.held, 0)
-            return unstable == 0, unstable
-        sign = np.linalg.slogdet(tangent)[0] * (-1) ** self.held
-        return bool(is_stable(tangent, self.held, False)), int(sign < 0)
-
-    def ahead(self, here: _State, length: float) -> _State | None:
-        """The equilibrium a step ahead, None where there is none near the tangent."""
-        found = self.correct(here.here, here.at, here.direction, length)
-        if found is None:
-            return None
-        drift = np.append(found[0], found[1]) - here.place - length * here.direction
-        if np.linalg.norm(drift) > DRIFT * length:
-            return None
-        try:
-            state = self.state(found[0], found[1], here.direction, found[2])
-        except np.linalg.LinAlgError:
-            return None
-        return state if here.direction @ state.direction >= BEND else None
-
-    def settled(self, before: _State, beyond: _State, factor: float) -> _State:
-        """The equilibrium at a load between two points."""
-        share = (factor - before.at) / (beyond.at - before.at)
-        near = before.here + share * (beyond.here - before.here)
-        return self.state(self.settle(near, factor), factor, beyond.direction)
-
-    def correct(
-        self, here: FloatArray, at: float, direction: FloatArray, length: float
-    ) -> tuple[FloatArray, float, int] | None:
-        """The equilibrium a step ahead; None where the iteration does not arrive near there."""
-        start = np.append(here, at)
-        now = start + length * direction
-        for count in range(1, MOST_ITERATIONS + 1):
-            residual = self.residual(now[:-1], now[-1])
-            tangent = self.tangent(now[:-1], now[-1])
-            load = self.by_load(now[:-1], float(now[-1]))
-            bordered = np.vstack([np.column_stack([tangent, load]), direction])
-            missing = np.append(residual, direction @ (now - start) - length)
-            try:
-                change = np.linalg.solve(bordered, missing)
-            except np.linalg.LinAlgError:
-                return None
-            now = now - change
-            if not np.isfinite(now).all() or np.linalg.norm(now - start) > 3 * length:
-                return None
-            if np.linalg.norm(change) < max(CLOSE * length, ROUNDING):
-                return now[:-1], float(now[-1]), count
-        return None
-
-    def settle(self, near: FloatArray, factor: float) -> FloatArray:
-        """The equilibrium at a load, from one near it."""
-        for _ in range(MOST_ITERATIONS):
-            residual = self.residual(near, factor)
-            change = np.linalg.solve(self.tangent(near, factor), residual)
-            near = near - change
-            if np.linalg.norm(change) < CLOSE:
-                break
-        return near

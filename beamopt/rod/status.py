@@ -24,15 +24,15 @@ class RodStatus(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether a clock ended it: tried again it may end otherwise."""
+        """True if a clock ended it: tried again it may end otherwise."""
         return self is RodStatus.TOO_SLOW
 
     @property
     def is_physical(self) -> bool:
-        """Whether the rod has no stable equilibrium; other endings say nothing of it."""
+        """True if the rod has no stable equilibrium; other endings say nothing of it."""
         return self in (RodStatus.LIMIT_POINT, RodStatus.BUCKLED, RodStatus.CRUSHED)
 
     @property
     def is_settled(self) -> bool:
-        """Whether the rod ends there: no finer resolution and no more work changes it."""
+        """True if the rod ends there: no finer resolution and no more work changes it."""
         return self.is_physical

@@ -87,7 +87,7 @@ class PolarGrid:
 
     @cached_property
     def domain(self) -> Domain:
-        """Where elements are."""
+        """Radii [mm] and angles [rad] between which elements are."""
         start, span = float(np.radians(self.start)), float(np.radians(self.span))
         return Domain(float(self.inner_radius), float(self.outer_radius), start, span)
 

@@ -59,13 +59,14 @@ def _lowest(bound: Certificate) -> float | None:
 def _bounds_csv(bounds: dict[str, Certificate]) -> str:
     rows: list[tuple[object, ...]] = []
     for target, bound in bounds.items():
+        said = bound.status.value, bound.status.name
         if bound.ring is None or bound.proven is None or bound.response is None:
-            rows.append((target, "", "", "", "", bound.status.value))
+            rows.append((target, "", "", "", "", *said))
         else:
             ring = bound.ring.outer, bound.ring.inner
             values = bound.proven.loss, bound.response.loss, *ring
-            rows.append((target, *values, bound.status.value))
-    return csv_text("target,proven_L,response_L,ring_L,ring_attained_L,status", rows)
+            rows.append((target, *values, *said))
+    return csv_text("target,proven_L,response_L,ring_L,ring_attained_L,status,ended", rows)
 
 
 def _refinement(one: Outcome) -> RefinedOutcome:

@@ -25,7 +25,7 @@ class Ending(Enum):
 
 
 class Source(Enum):
-    """Where an estimate of the error is from; the value is the text shown to people."""
+    """Source of an estimate of the error; the value is the text shown to people."""
 
     CLOSED_FORM = (
         "exact up to rounding: the beam is the law's own closed form; nothing was compared"
@@ -97,5 +97,5 @@ class Within:
 
     @property
     def is_beam(self) -> bool:
-        """Whether these are the tips of a beam: a difference to the beam says nothing then."""
+        """True if these are the tips of a beam: a difference to the beam says nothing then."""
         return self.source in (Source.CLOSED_FORM, Source.TIGHTER)

@@ -77,7 +77,7 @@ def run_accuracy(
         most_seconds=most_seconds,
         workers=workers,
         progress=progress,
-        kept=_Journal(lines, measured_in(lines)),
+        kept=_Journal(lines, measured_in(lines, question.law.limits.iterations)),
     )
     _write(found, out)
     return found

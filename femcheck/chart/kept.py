@@ -42,15 +42,17 @@ def asked_of(question: Question) -> dict[str, Any]:
     }
 
 
-def measured_in(journal: LineJournal) -> dict[str, Measured]:
+def measured_in(journal: LineJournal, iterations: int = 0) -> dict[str, Measured]:
     """Replies by model, the last one of each; those that were cut short are not among them.
+
+    iterations : the work limit of one case that is asked for now.
 
     Raises
     ------
     InputError : the journal is damaged.
     """
     measured = dict(journal.read(lambda line: (line["model"], read(line))))
-    return {name: one for name, one in measured.items() if is_final(one)}
+    return {name: one for name, one in measured.items() if is_final(one, iterations)}
 
 
 def chart_of(question: Question, measured: Mapping[str, Measured]) -> Chart:

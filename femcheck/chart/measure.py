@@ -28,6 +28,7 @@ class Measured:
 
     seconds : of processor time, the least of several replies where one is quick.
     made_with : threads, processor and versions.
+    iterations : the work limit of one case.
     """
 
     family: str
@@ -35,6 +36,7 @@ class Measured:
     reply: Reply
     seconds: float
     made_with: str = ""
+    iterations: int = 0
 
     @property
     def name(self) -> str:
@@ -59,7 +61,8 @@ def measure(question: Question, model: Model) -> Measured:
         _, again = _asked(question, model)
         seconds, spent, repeats = min(seconds, again), spent + again, repeats + 1
     about = made_with(provenance(PACKAGES))
-    return Measured(model.family, model.resolution, reply, float(seconds), about)
+    most = question.law.limits.iterations
+    return Measured(model.family, model.resolution, reply, float(seconds), about, most)
 
 
 _WARM: set[str] = set()
@@ -97,6 +100,7 @@ def written(measured: Measured) -> dict[str, Any]:
         "tips": [[None if np.isnan(x) else x for x in tip] for tip in reply.tips.tolist()],
         "endings": [[one.key, one.load, one.detail] for one in reply.endings],
         "made_with": measured.made_with,
+        "iterations": measured.iterations,
     }
 
 
@@ -115,7 +119,8 @@ def read(line: dict[str, Any]) -> Measured:
         raise ValueError("an ending for every tip")
     reply = Reply(tips, endings, int(line["unknowns"]), str(line["size"]))
     seconds, about = float(line["seconds"]), str(line["made_with"])
-    return Measured(line["family"], line["resolution"], reply, seconds, about)
+    most = int(line.get("iterations", 0))  # earlier lines never ended by it
+    return Measured(line["family"], line["resolution"], reply, seconds, about, most)
 
 
 def _endings(line: dict[str, Any]) -> tuple[Ended, ...]:
@@ -127,10 +132,11 @@ def _endings(line: dict[str, Any]) -> tuple[Ended, ...]:
     )
 
 
-def is_final(measured: Measured) -> bool:
-    """Whether nothing was cut short: by a clock, a process that died, or too little work allowed.
+def is_final(measured: Measured, iterations: int) -> bool:
+    """True if nothing was cut short by a clock, a dead process, or a work limit below `iterations`.
 
-    A reply does not say how much work that was, so that it is asked for again in any case.
+    iterations : the work limit of one case that is asked for now.
     """
     statuses = {one.status for one in measured.reply.endings}
-    return Status.WORK_LIMIT not in statuses and not any(one.is_interrupted for one in statuses)
+    more = Status.WORK_LIMIT in statuses and measured.iterations < iterations
+    return not more and not any(one.is_interrupted for one in statuses)

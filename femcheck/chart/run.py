@@ -79,7 +79,7 @@ def run_chart(
         raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
     claim_folder(out, JOURNAL, (), resume=resume)
     journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
-    measured = measured_in(journal)
+    measured = measured_in(journal, question.law.limits.iterations)
     asked = {key_of(model) for one in series for model in one.all}
 
     def keep(one: Measured) -> None:
@@ -156,11 +156,9 @@ def _too_dear(
 ) -> Ended | None:
     """Why a model is left out; None where it is asked."""
     guess = _guessed(series, model, measured)
-    if guess == np.inf:
-        return Ended(NoReply.UNKNOWN_COST)
     if guess > budget.seconds:
         return Ended(NoReply.TOO_DEAR, detail=f"more than {budget.seconds:g} s")
-    return None
+    return Ended(NoReply.UNKNOWN_COST) if guess == np.inf else None
 
 
 def _guessed(series: Series, model: Model, measured: dict[str, Measured]) -> float:

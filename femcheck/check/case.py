@@ -135,7 +135,7 @@ class CaseResult:
         return self.outcome.status
 
     def is_final(self, limits: Limits) -> bool:
-        """Whether it would end alike if it was solved again under these limits."""
+        """True if it would end alike if it was solved again under these limits."""
         return not limits.repeats(self.status, self.outcome.statistics)
 
 
@@ -155,14 +155,14 @@ MOST_WORKSHOPS = 2  # factors are large; a check goes back and forth between two
 
 def workshop(solid: Solid) -> Workshop:
     """Built once a process and a mesh; laws of one mesh share the pattern and its analysis."""
-    kept = _WORKSHOPS.get(solid.digest)
-    if kept is None:
+    shop = _WORKSHOPS.get(solid.digest)
+    if shop is None:
         while len(_WORKSHOPS) >= MOST_WORKSHOPS:
             _WORKSHOPS.pop(next(iter(_WORKSHOPS)))
         body = solid.body()
-        kept = Workshop(solid.problem(body), Shapes(body), direct_solver(solid.solver))
-        _WORKSHOPS[solid.digest] = kept
-    return replace(kept, problem=kept.problem.with_law(solid.law))
+        shop = Workshop(solid.problem(body), Shapes(body), direct_solver(solid.solver))
+        _WORKSHOPS[solid.digest] = shop
+    return replace(shop, problem=shop.problem.with_law(solid.law))
 
 
 def forget_workshops() -> None:
@@ -201,7 +201,7 @@ def _is_beyond_law(problem: Equilibrium, found: Outcome) -> bool:
 
 
 def _followed(shop: Workshop, case: Case, failed: Outcome, budget: Budget) -> Outcome:
-    """Where load steps found nothing, or what no law describes: the path from rest, which tells."""
+    """Where load steps found nothing, or what no law describes: the path from rest."""
     spent = failed.statistics
     load = float(np.abs(case.pressures).max())
     direction = case.pressures / load

@@ -34,7 +34,7 @@ class Checked:
 
     @property
     def certain(self) -> bool:
-        """Whether what mesh and penalty leave is too small to turn the verdict over."""
+        """True if what mesh and penalty leave is too small to turn the verdict over."""
         compared = self.comparison
         if compared is None or compared.unanswered:
             return False

@@ -139,13 +139,14 @@ class Comparison:
         """Largest share that mesh and penalty may still move a tip by, over displacement.
 
         The estimated error of the standard mesh, or where its order is not known all that changes
-        from the coarse mesh to it, and what extrapolating in 1/c did. NaN without an answer.
+        from the coarse mesh to it, and what extrapolating in 1/c did. NaN where a loaded case has
+        no answer on both meshes.
         """
         change = np.linalg.norm(self.final.tips - self.solid("coarse", np.inf).tips, axis=1)
         mesh = change if self.order is None else self.discretisation
         shares = (mesh + self.penalty_error) / self._moved
-        known = shares[self.is_loaded & ~np.isnan(shares)]
-        return float(known.max()) if known.size else float("nan")
+        loaded = shares[self.is_loaded]
+        return float(loaded.max()) if loaded.size else float("nan")
 
     @property
     def unanswered(self) -> int:

@@ -58,7 +58,7 @@ class Schedule:
         return all(self._is_known(name, source) for name, source in self._sources(key))
 
     def builds_on(self, key: Key, others: Collection[Key]) -> bool:
-        """Whether a case is predicted from, or may start from, any of the others."""
+        """True if a case is predicted from, or may start from, any of the others."""
         return any((name, source) in others for name, source in self._sources(key))
 
     def _sources(self, key: Key) -> list[tuple[str, Node | int]]:

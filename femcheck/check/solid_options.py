@@ -61,7 +61,7 @@ class SolidOptions:
 
     @property
     def limits(self) -> Limits:
-        """What a case or a ray may take; no part of the question."""
+        """Limits of a case or a ray; no part of the question."""
         return Limits(self.iterations, self.seconds)
 
     @property

@@ -38,7 +38,7 @@ def write_arrays(file: Path, arrays: Mapping[str, Any]) -> None:
 
 
 def read_arrays(file: Path, convert: Callable[[Any], T | None]) -> T | None:
-    """What `convert` makes of the arrays in a file; None where there is no file.
+    """Return what `convert` makes of the arrays in a file; None where there is no file.
 
     A file that is damaged is None too, and logged: its result is to be computed again.
     """

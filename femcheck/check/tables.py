@@ -133,7 +133,7 @@ def verdict(checked: Checked) -> str:
     known = not math.isnan(compared.left)
     left = f"; mesh and penalty leave up to {100 * compared.left:.3g} %" if known else ""
     said = f"worst {worst}, median {median} of displacement (asked {agree}{left})"
-    why = "what they leave could turn it over" if known else "it stands on one mesh"
+    why = "what they leave could turn it over" if known else "the coarse mesh lacks an answer"
     sure = "" if checked.certain else f"; uncertain, as {why}"
     return f"{'agrees' if checked.holds else 'differs'}: {said}{sure}"
 

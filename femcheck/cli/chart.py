@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
+from pydantic import TypeAdapter
 from rich.markup import escape
 from rich.table import Table
 
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
-from beamopt.model import parse
+from beamopt.grid_keys import Levels
 from beamopt.provenance import thread_settings
 from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
 from femcheck.chart.run import Budget, run_chart
@@ -22,6 +23,8 @@ from femcheck.models.named import named_design
 from femcheck.models.question import Question
 
 __all__ = ["ChartRequest", "chart_command", "levels_of"]
+
+LEVELS: TypeAdapter[tuple[float, float, float]] = TypeAdapter(Levels)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +49,7 @@ def chart_command(request: ChartRequest) -> None:
     name, design = named_design(request.source)
     say_findings(design)
     if request.levels is not None:
-        data = design.model_dump(by_alias=True, exclude_none=True)
-        design = parse(type(design), data | {"pressures": levels_of(request.levels)}, "--levels")
+        design = design.model_copy(update={"pressures": levels_of(request.levels)})
     question = Question.of(name, design, law)
     folder = request.out or Path("charts") / name
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
@@ -74,20 +76,18 @@ def chart_command(request: ChartRequest) -> None:
     _report(chart, folder)
 
 
-def levels_of(text: str) -> tuple[float, ...]:
+def levels_of(text: str) -> tuple[float, float, float]:
     """Three pressures [kPa] of "0,5,10".
 
     Raises
     ------
-    InputError : they are not three numbers.
+    InputError : they are not three ascending pressures that a design may have.
     """
     try:
-        levels = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        levels = ()
-    if len(levels) != 3:
-        raise InputError("--levels", "", text, "three ascending pressures in kPa, as 0,5,10")
-    return levels
+        return LEVELS.validate_python(tuple(float(part) for part in text.split(",")))
+    except ValueError:  # a ValidationError is one
+        allowed = "three ascending pressures in kPa up to 2000, as 0,5,10"
+        raise InputError("--levels", "", text, allowed) from None
 
 
 def _report(chart: Chart, folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
 
@@ -10,10 +10,12 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.files import csv_text, write_atomic
 from beamopt.provenance import thread_settings
 from femcheck.continuation.ended import Ended
+from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.moved import Moved, said
 from femcheck.regression.run import ContradictionError, Regression, hold_designs, regress
 
@@ -34,7 +36,13 @@ def baseline_command(
     try:
         with _Shown() as shown:
             files = hold_designs(
-                designs, out, meshes, force=force, workers=workers, callback=shown.tell
+                designs,
+                out,
+                meshes,
+                force=force,
+                workers=workers,
+                callback=shown.tell,
+                named=_findings_of(designs),
             )
     except ContradictionError as error:
         console.print(f"nothing is written: {error}", soft_wrap=True, markup=False)
@@ -51,7 +59,14 @@ def regress_command(
     started = perf_counter()
     _say_threads(workers)
     with _Shown() as shown:
-        found = regress(designs, baseline, meshes, workers=workers, callback=shown.tell)
+        found = regress(
+            designs,
+            baseline,
+            meshes,
+            workers=workers,
+            callback=shown.tell,
+            named=_findings_of(designs),
+        )
     if out is not None:
         write_atomic(out, csv_text(HEADER, map(_cells, found.moved + found.late)))
     seconds = perf_counter() - started
@@ -67,6 +82,12 @@ def regress_command(
     if found.moved:
         console.print(f"lowest rung that moved: {found.lowest}", soft_wrap=True, markup=False)
     raise typer.Exit(1)
+
+
+def _findings_of(designs: Sequence[str]) -> Callable[[HeldDesign], None]:
+    """Say what is wrong with a design, with its name where there are several."""
+    several = len(designs) > 1
+    return lambda one: say_findings(one.design, one.name if several else "")
 
 
 def _say_late(late: Sequence[Moved]) -> None:

@@ -13,7 +13,7 @@ __all__ = ["FOUND", "Ended", "NoReply", "ReplyStatus"]
 
 
 class NoReply(Enum):
-    """Why a model has no reply, whatever the pressures; the value is the text shown to people."""
+    """Reason for no reply, whatever the pressures; the value is the text shown to people."""
 
     NOT_STIFF = "the raster has too little material to bend"
     TOO_DEAR = "left out: expected to take too long"
@@ -23,7 +23,7 @@ class NoReply(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether it may be otherwise another time: with more time allowed."""
+        """True if it may be otherwise another time: with more time allowed."""
         return self in (NoReply.TOO_DEAR, NoReply.UNKNOWN_COST)
 
     @property
@@ -46,7 +46,7 @@ GROUPS: dict[str, type[ReplyStatus]] = {
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How looking for a tip ended; `str` of it is the text for people.
+    """Ending of the search for a tip; `str` of it is the text for people.
 
     load : P at which it ended [kPa]; None where there is none, or it is not known.
     detail : what else there is to say.
@@ -58,7 +58,7 @@ class Ended:
 
     @property
     def is_found(self) -> bool:
-        """Whether there is a tip."""
+        """True if there is a tip."""
         return self.status in (Status.CONVERGED, RodStatus.CONVERGED)
 
     @property
@@ -83,7 +83,7 @@ class Ended:
 
     @classmethod
     def of_mesh(cls, failure: MeshFailure) -> Ended:
-        """That there is no mesh."""
+        """The ending where there is no mesh."""
         return cls(failure.problem, detail=failure.detail)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""How much one case or one path may take, counted in work; and a clock for who asks for one."""
+"""How much one case or one path may take, counted in work; and a clock where one is asked for."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Limits:
     iterations : most of Newton's iterations, each with one factorisation. How many a path takes
         hardly depends on the mesh; what one of them costs does. The longest path of any report
         takes 362.
-    seconds : of a wall clock [s], for who can not wait; infinite: there is none, and results do
-        not depend on what else the machine does.
+    seconds : of a wall clock [s]; infinite: there is none, and results do not depend on what
+        else the machine does.
     """
 
     iterations: int = 2000
@@ -30,7 +30,7 @@ class Limits:
         return Budget(self)
 
     def repeats(self, status: Status, spent: Statistics) -> bool:
-        """Whether a result is to be tried again under these limits.
+        """True if a result is to be tried again under these limits.
 
         The clock or the death of a process ended it, or a work limit below this one.
         """
@@ -39,7 +39,7 @@ class Limits:
 
 
 class Budget:
-    """What is left of the limits of one case."""
+    """Rest of the limits of one case."""
 
     def __init__(self, limits: Limits) -> None:
         self._left = limits.iterations

@@ -26,7 +26,7 @@ class Status(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether a clock or the death of its process ended it: tried again it may end otherwise.
+        """True if a clock or the death of its process ended it: tried again it may end otherwise.
 
         All other endings are the same whatever else the machine does.
         """
@@ -34,23 +34,23 @@ class Status(Enum):
 
     @property
     def is_physical(self) -> bool:
-        """Whether the actuator has no stable equilibrium there; other endings say nothing of it."""
+        """True if the actuator has no stable equilibrium there; other endings say nothing of it."""
         return self in (Status.LIMIT_POINT, Status.BUCKLED)
 
     @property
     def is_limit(self) -> bool:
-        """Whether a limit on work or on time ended it, and nothing that it computed."""
+        """True if a limit on work or on time ended it, and nothing that it computed."""
         return self in (Status.WORK_LIMIT, Status.TIME_OUT)
 
     @property
     def is_settled(self) -> bool:
-        """Whether the actuator or its law ends there: no finer mesh and no more work changes it."""
+        """True if the actuator or its law ends there: no finer mesh and no more work changes it."""
         return self.is_physical or self is Status.BEYOND_LAW
 
 
 @dataclass
 class Statistics:
-    """What an equilibrium cost; sums over all its load steps. Seconds are of processor time."""
+    """Cost of an equilibrium: sums over all its load steps. Seconds are of processor time."""
 
     steps: int = 0
     iterations: int = 0

@@ -34,7 +34,8 @@ class PathSteps:
     narrow : share of the load to which a bifurcation is closed in.
     patience, tries : volume, over that at rest, and steps that a path is given past a limit point
         to become stable again at a higher load: a snap.
-    most_points : that a path may have, all of which are held in memory.
+    most_points : of a path, all of which are held in memory; steps that do not reach the last
+        stop with so many are too small.
     """
 
     newton: Newton = field(default_factory=lambda: Newton(most_iterations=8))
@@ -148,6 +149,11 @@ class _Trace:
                 passed = self._ended or self._passing(leg, tried, length)
                 if passed is not None:
                     return passed
+                if not is_past(tried):  # a snap within the step, to a shape beyond the law
+                    length, halved = length / 2, True
+                    if length < self._steps.smallest:
+                        return Status.BEYOND_LAW, leg.here.load
+                    continue
             if self._ended is None and is_past(tried):
                 self._ended = self._ending(leg, tried, length)
                 self._ended_at = leg.here.volume
@@ -168,7 +174,7 @@ class _Trace:
             return Status.CONVERGED, float("nan")
         if self._has_all():
             return Status.STEP_TOO_SMALL, self.snaps[-1]
-        return self._ended or (Status.WORK_LIMIT, self.points[-1].load)
+        return self._ended or (Status.STEP_TOO_SMALL, self.points[-1].load)
 
     def _take(self, point: PathPoint, ended: End | None) -> None:
         self.points.append(point)
@@ -183,7 +189,9 @@ class _Trace:
         for place, stop in enumerate(self._stops):
             if self.found[place] is None and stop <= point.load:
                 solved = self._stepper.at(stop, point)
-                if solved is not None and not is_past(solved):
+                if solved is None or is_past(solved):
+                    continue
+                if self._stepper.share_of_law(solved) <= 1:
                     self.found[place] = solved
 
     def _has_all(self) -> bool:

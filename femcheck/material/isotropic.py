@@ -133,7 +133,7 @@ class Isotropic(ABC):
 
     @cached_property
     def stretch_range(self) -> StretchRange:
-        """Up to which stretch its responses rise, the volume kept."""
+        """Stretches up to which its responses rise at constant volume."""
         return stretch_range(self._slopes, self.moduli.C2)
 
     @property

@@ -37,8 +37,8 @@ class MeshProblem(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """False: gmsh hangs on an outline, and does so again."""
-        return False
+        """True if a clock ended gmsh: with more time there may be a mesh."""
+        return self is MeshProblem.HUNG
 
     @property
     def is_settled(self) -> bool:

@@ -219,7 +219,7 @@ class Prediction:
 
     @cached_property
     def safe_box(self) -> SafeBox:
-        """What may be advised: the stable box with a margin, and no chamber grown too far."""
+        """The box to advise: the stable one with a margin, and no chamber grown too far."""
         return safe_box(self.rays, self.results, self.largest)
 
     @property
@@ -258,7 +258,7 @@ class Prediction:
 
     @property
     def certain(self) -> bool:
-        """Whether both meshes say the same: of where rays end, and of how far the beam is off."""
+        """True if both meshes agree on the ends of rays and on the beam's difference."""
         if not self.has_answers:
             return False
         if not self.is_loaded.any():

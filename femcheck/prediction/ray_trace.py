@@ -60,7 +60,7 @@ class RayResult:
     statistics: Statistics = field(default_factory=Statistics)
 
     def is_final(self, limits: Limits) -> bool:
-        """Whether it would end alike if it was followed again under these limits."""
+        """True if it would end alike if it was followed again under these limits."""
         return not limits.repeats(self.status, self.statistics)
 
     @property

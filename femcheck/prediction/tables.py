@@ -11,6 +11,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
 from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
+from femcheck.continuation.ended import Ended
 from femcheck.material.catalogue import constants_of
 from femcheck.material.isotropic import Isotropic
 from femcheck.material.law import Law
@@ -248,9 +249,10 @@ def _limit(found: Prediction, ends: RayEnds) -> dict[str, Any]:
     return {
         "of": ray.text,
         "status": result.status.value,
-        "ended": result.status.name,
+        "ended": Ended(result.status).key,
         "ends_at_kpa": _number(result.critical),
         "status_on_the_coarse_mesh": None if coarse is None else coarse.status.value,
+        "ended_on_the_coarse_mesh": None if coarse is None else Ended(coarse.status).key,
         "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),
         "ratio": _number(ends.ratio),
         "ratio_is_a_lower_bound": ends.is_bound,

@@ -25,7 +25,7 @@ GROWTH = 1.5
 
 
 class Agreement(Enum):
-    """What two meshes say of one ray; the value is the text shown to people."""
+    """Agreement of two meshes on one ray; the value is the text shown to people."""
 
     AGREE = "the meshes agree"
     DIFFER = "the meshes differ"
@@ -60,7 +60,7 @@ class RayEnds:
 
     @property
     def is_bound(self) -> bool:
-        """Whether the ratio is a lower bound: a mesh has no end as far as it was followed."""
+        """True if the ratio is a lower bound: a mesh has no end as far as it was followed."""
         results = (self.standard, self.coarse)
         return (
             not math.isnan(self.ratio)
@@ -70,7 +70,7 @@ class RayEnds:
 
     @property
     def agreement(self) -> Agreement:
-        """Whether the two loads are near enough to each other."""
+        """Agreement of the two loads."""
         if self.coarse is None:
             return Agreement.ONE_MESH
         if self.ratio > AGREE:
@@ -95,7 +95,7 @@ def _stable_up_to(ray: Ray, result: RayResult) -> float:
 
 
 class Why(Enum):
-    """What keeps a safe box from being larger."""
+    """Limit of a safe box."""
 
     END = "end of a ray"
     GROWTH = "growth of a chamber"

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from femcheck.continuation.ended import Ended
-from femcheck.regression.held import Held
+from femcheck.regression.held import Held, is_late
 
 __all__ = ["contradictions"]
 
@@ -28,7 +27,7 @@ def contradictions(held: Sequence[Held], length: float) -> list[str]:
         f"{one.rung}: {one.quantity} at {row}: {value}"
         for one in held
         for row, value in one.rows.items()
-        if isinstance(value, Ended) and value.status.is_interrupted
+        if is_late(value)
     ]
     for first, second in PAIRS:
         for one in _of(held, first):

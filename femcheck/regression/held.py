@@ -12,7 +12,7 @@ from beamopt.arrays import FloatArray
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.reply import Reply
 
-__all__ = ["LADDER", "Held", "Row", "at", "columns", "of_reply", "rounding"]
+__all__ = ["LADDER", "Held", "Row", "at", "columns", "is_late", "of_reply", "rounding"]
 
 Row = tuple[float, ...] | Ended
 """Numbers, or why there are none."""
@@ -91,6 +91,11 @@ class Held:
 
 def _round(value: float, decimals: int) -> float:
     return round(float(value), decimals) + 0.0  # no "−0.0"
+
+
+def is_late(row: Row | None) -> bool:
+    """True if a clock or a kill ended the case of a row: nothing is known of it."""
+    return isinstance(row, Ended) and row.status.is_interrupted
 
 
 def at(pressures: FloatArray) -> str:

@@ -10,7 +10,7 @@ from femcheck.continuation.ended import Ended, NoReply
 from femcheck.regression.held import LADDER, Held, Row
 from femcheck.regression.measure import Measured
 
-__all__ = ["Moved", "compare", "is_late", "lowest", "said"]
+__all__ = ["Moved", "compare", "lowest", "said"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +52,6 @@ def compare(design: str, held: Iterable[Held], measured: Measured) -> list[Moved
     for other in now.values():  # appeared: nothing is held of it
         found += [Moved(design, other, row, None, is_, math.inf) for row, is_ in other.rows.items()]
     return sorted(found, key=_place)
-
-
-def is_late(moved: Moved) -> bool:
-    """Whether a clock or a kill ended the case of a row today: no result, so no move."""
-    return isinstance(moved.now, Ended) and moved.now.status.is_interrupted
 
 
 def lowest(moved: Iterable[Moved]) -> Moved | None:

@@ -18,11 +18,11 @@ from femcheck.regression.baseline import (
     still_held,
     write_baseline,
 )
-from femcheck.regression.held import LADDER, Held
+from femcheck.regression.held import LADDER, Held, is_late
 from femcheck.regression.held_design import BUNDLED, HeldDesign, design_digest, find_design
 from femcheck.regression.kept_mesh import is_of, make_section, write_section
 from femcheck.regression.measure import Measured, measure_all, parts_of
-from femcheck.regression.moved import Moved, compare, is_late, lowest
+from femcheck.regression.moved import Moved, compare, lowest
 
 __all__ = ["ContradictionError", "Regression", "hold_designs", "regress", "update_baseline"]
 
@@ -30,6 +30,9 @@ LIBRARIES = ("scikit-fem", "pypardiso", "gmsh", "meshio")
 
 Callback = Callable[[str, str, int], None]
 """Called with a design, a part of it that is done, and how many parts there are in all."""
+
+DesignCallback = Callable[[HeldDesign], None]
+"""Called with every design that is named, before its rungs are computed."""
 
 
 class ContradictionError(ValueError):
@@ -70,6 +73,7 @@ def hold_designs(
     force: bool = False,
     workers: int = 1,
     callback: Callback | None = None,
+    named: DesignCallback | None = None,
 ) -> list[Path]:
     """Write what all rungs of the designs say today; those of the package if none is named.
 
@@ -80,6 +84,7 @@ def hold_designs(
     """
     designs = [find_design(name, meshes) for name in names or BUNDLED]
     _check_names(designs)
+    _call(named, designs if names else ())
     there = [baseline_file(folder, one.name) for one in designs]
     for file in there:
         if file.exists() and not force:
@@ -130,6 +135,7 @@ def regress(
     workers: int = 1,
     rungs: Collection[str] | None = None,
     callback: Callback | None = None,
+    named: DesignCallback | None = None,
 ) -> Regression:
     """Compute everything that is held anew, and compare.
 
@@ -151,6 +157,7 @@ def regress(
         chosen.append((replace(design, rungs=wanted), base))
     designs = [design for design, _ in chosen]
     _check_names(designs)
+    _call(named, designs if names else ())
     measured = measure_all(
         designs, estimate=False, workers=workers, callback=_counted(callback, designs)
     )
@@ -161,8 +168,8 @@ def regress(
         compared += held
         moved += compare(design.name, held, measured[design.name])
     moved.sort(key=lambda one: LADDER.index(one.held.rung))
-    late = tuple(one for one in moved if is_late(one))
-    rest = tuple(one for one in moved if not is_late(one))
+    late = tuple(one for one in moved if is_late(one.now))
+    rest = tuple(one for one in moved if not is_late(one.now))
     rows = sum(len(one.rows) for one in compared)
     count = sum(len(design.rungs) for design in designs)
     return Regression(rest, late, tuple(one.name for one in designs), count, rows)
@@ -227,6 +234,12 @@ def _have_mesh(design: HeldDesign) -> None:
 def _wrong(design: HeldDesign, measured: Measured) -> list[str]:
     broken = [measured.broken] if measured.broken else []
     return broken + contradictions(measured.held, design.design.actuator.length)
+
+
+def _call(callback: DesignCallback | None, designs: Sequence[HeldDesign]) -> None:
+    if callback is not None:
+        for design in designs:
+            callback(design)
 
 
 def _counted(

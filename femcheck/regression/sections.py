@@ -20,6 +20,7 @@ GRIDS = ((128, 360), (64, 180))
 """Rasters, radial × angular."""
 
 SUPPLIES = ("supply 1", "supply 2", "supply 3")
+OF_TRIANGLES = 1e-3, "other triangles of the same outline: 1e-03 of the value"
 OF_STRANDS = 1e-7, "the linear system of the warping, solved to rounding: 1e-07 of the value"
 
 
@@ -95,7 +96,7 @@ def _torsion(design: Design) -> Iterator[Held]:
     known = design.values.saint_venant
     if known is None:
         return
-    share, source = OF_STRANDS
+    share, source = OF_TRIANGLES if design.seal.rules.sealed else OF_STRANDS
     parts: tuple[tuple[str, str, FloatArray, tuple[str, ...]], ...] = (
         ("torsion constant", "mm⁴", np.array([known.torsion_constant]), ("I_T",)),
         ("shear centre", "mm", known.shear_centre[None], ("from the centroid",)),

@@ -24,7 +24,7 @@ from femcheck.models.question import LawChoice, Question
 from femcheck.models.reply import Reply
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
-from femcheck.regression.held import Held, Row, at, columns, of_reply, rounding
+from femcheck.regression.held import Held, Row, at, columns, is_late, of_reply, rounding
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.kept_mesh import KeptMesher, read_kept
 from femcheck.regression.rods import SAFETY
@@ -141,13 +141,9 @@ def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
     rung, layers, law = "solid, limit", f"{LAYERS} layers", question.law_text
     rows = of_reply(question.pressures, replies[0])
     yield Held(rung, layers, "endings", "", rows, 0.0, NO_NUMBERS, law)
-    late = {row: one for row, one in rows.items() if _is_late(one)}
+    late = {row: one for row, one in rows.items() if is_late(one)}
     rows = columns(rows, loads[0]) | late
     yield Held(rung, layers, "limit pressures", "kPa", rows, max(tolerance, least), said, law)
-
-
-def _is_late(row: Row) -> bool:
-    return isinstance(row, Ended) and row.status.is_interrupted
 
 
 def _limits(reply: Reply) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -74,9 +74,11 @@ class Combinations:
         return np.asarray(np.linalg.norm(self.solid - [0.0, 0.0, self.length], axis=1))
 
     def ending(self, row: int) -> str:
-        """How a combination ended, and where, for people."""
-        text, at = self.texts[row], self.ends_at[row]
-        return text if np.isnan(at) else f"{text} at P = {at:.4g} kPa"
+        """Return the ending of a combination, with its load, for people."""
+        ended, at = self.endings[row], float(self.ends_at[row])
+        if ended is None or np.isnan(at):
+            return self.texts[row]
+        return str(replace(ended, load=at))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +109,7 @@ class SolidRun:
 
     @property
     def is_certain(self) -> bool:
-        """Whether two meshes bear its verdict out; folders that do not say count as such."""
+        """True if two meshes bear its verdict out; folders that do not say count as such."""
         return not self.summary.has("verdict.certain") or self.summary.flag("verdict.certain")
 
     @cached_property

@@ -63,7 +63,7 @@ def badge_of(run: SolidRun) -> Badge:
 
 
 def meaning(ended: Ended | None) -> str:
-    """What an ending means, "" for one that is not known here."""
+    """Return the meaning of an ending, "" for one that is not known here."""
     return "" if ended is None else MEANINGS.get(ended.status, "")
 
 

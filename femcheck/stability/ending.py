@@ -34,7 +34,7 @@ class Ending(Enum):
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether a map that goes on tries it once more, as of the `Status` of its name."""
+        """True if a map that goes on tries it once more, as of the `Status` of its name."""
         return self.name in Status.__members__ and Status[self.name].is_interrupted
 
     @property

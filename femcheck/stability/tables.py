@@ -7,6 +7,7 @@ from math import isfinite
 
 from beamopt.files import csv_text
 from femcheck.stability.axis import Axis
+from femcheck.stability.ending import Ending
 from femcheck.stability.found import AxisFound, Row, share_of_cell
 from femcheck.stability.validity import intervals_of
 from femcheck.stability.work import FINER, TRACE, Key, Result
@@ -14,12 +15,12 @@ from femcheck.stability.work import FINER, TRACE, Key, Result
 __all__ = ["tables_of", "timing_csv"]
 
 CASES = (
-    "axis,column,pressure_kPa,status,reached_kPa,solid_x,solid_y,solid_z,beam_x,beam_y,beam_z,"
+    "axis,column,pressure_kPa,status,ended,reached_kPa,solid_x,solid_y,solid_z,beam_x,beam_y,beam_z,"
     "difference_share,largest_stretch,unstable,iterations,unknowns,reason"
 )
 LIMITS = (
-    "axis,column,limit_kPa,status,growth,snaps_kPa,triangles,layers,unknowns,finer_kPa,"
-    "finer_status,finer_triangles,finer_layers,coarse_over_finer,exact_kPa,over_exact"
+    "axis,column,limit_kPa,status,ended,growth,snaps_kPa,triangles,layers,unknowns,finer_kPa,"
+    "finer_status,finer_ended,finer_triangles,finer_layers,coarse_over_finer,exact_kPa,over_exact"
 )
 VALIDITY = "axis,column,within_5_percent,from_kPa,to_kPa,to_is"
 TIMES = "axis,column,task,seconds"
@@ -40,7 +41,7 @@ def tables_of(found: Sequence[AxisFound]) -> dict[str, str]:
 def _cases(row: Row) -> list[tuple[object, ...]]:
     return [
         (
-            *(row.axis.name, row.label, pressure, cell.ending.value, _short(cell.reached)),
+            *(row.axis.name, row.label, pressure, *_both(cell.ending), _short(cell.reached)),
             *(NOTHING if cell.tip is None else map(_short, cell.tip)),
             *(NOTHING if cell.beam is None else map(_short, cell.beam)),
             *(_short(share_of_cell(row, cell)), _short(cell.stretch), cell.unstable),
@@ -56,12 +57,12 @@ def _limits(row: Row) -> list[tuple[object, ...]]:
     if trace is None:
         return []
     limit = trace.critical
-    fine: tuple[object, ...] = (None, None, None, None, None)
+    fine: tuple[object, ...] = (None,) * 6
     if finer is not None:
-        said = (_short(finer.critical), finer.ending.value, finer.triangles, finer.layers)
-        fine = (*said, _ratio(limit, finer.critical))
+        size = finer.triangles, finer.layers
+        fine = (_short(finer.critical), *_both(finer.ending), *size, _ratio(limit, finer.critical))
     line = (
-        *(row.axis.name, row.label, _short(limit), trace.ending.value, _short(trace.growth)),
+        *(row.axis.name, row.label, _short(limit), *_both(trace.ending), _short(trace.growth)),
         *(" ".join(f"{one:.6g}" for one in trace.snaps), trace.triangles, trace.layers),
         *(trace.unknowns, *fine, _short(exact), _ratio(limit, exact)),
     )
@@ -94,6 +95,11 @@ def timing_csv(axes: Mapping[str, Axis], results: Mapping[Key, Result]) -> str:
         task = names.get(number) or f"{axis.pressures[number]:g} kPa"
         lines.append((name, label, task, float(f"{result.seconds:.3g}")))
     return csv_text(TIMES, lines)
+
+
+def _both(ending: Ending) -> tuple[str, str]:
+    """Cells of "status" and "ended": the text for people, the name for programs."""
+    return ending.value, ending.name
 
 
 def _ratio(value: float | None, by: float | None) -> float | None:

@@ -58,7 +58,10 @@ def test_a_rod_that_is_no_arc_has_a_reason_instead(name: str) -> None:
     found = certificate(scene, target)
     assert found.status is BoundStatus.NOT_AN_ARC
     assert found.response is None
-    assert bound_summary(found, 1.0) == {"status": found.status.value}
+    assert bound_summary(found, 1.0) == {
+        "status": found.status.value,
+        "ended": found.status.name,
+    }
     assert gap_text(found, 1.0).startswith("no bound: ")
 
 
@@ -90,6 +93,7 @@ def test_a_search_says_how_far_it_is_above(tmp_path: Path) -> None:
     assert summary["L"] == pytest.approx(65.58, abs=0.01)
     assert summary["L"] + summary["L_above"] == pytest.approx(result.verdict.L, rel=1e-12)
     assert summary["kind"] == "numerical"
+    assert summary["ended"] == result.bound.status.name
     assert "seconds" not in json.dumps(summary)
     assert "65.5846 mm² (numerical" in gap_text(result.bound, result.verdict.L)
     assert "(10 %)" in gap_text(result.bound, 1.1 * summary["L"])

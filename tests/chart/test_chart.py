@@ -50,6 +50,7 @@ def test_what_a_chart_leaves(made: tuple[Path, Chart]) -> None:
     assert {(row["converged"], row["of"], row["scene"]) for row in rows} == {
         ("27", "27", "gravity")
     }
+    assert {row["ended"] for row in rows} == {RodStatus.CONVERGED.name}
     about = json.loads((folder / "provenance.json").read_text())
     assert about["verdict"] == chart.verdict
     assert about["uncertainty_mm"] == chart.uncertainty

@@ -192,7 +192,11 @@ def test_what_a_map_leaves(made: tuple[Path, list[Sample]]) -> None:
     assert [(row["seed"], row["method"]) for row in rows] == [
         (str(index), method) for index in range(8) for method in FEW
     ]
-    assert {row["verdict"] for row in rows} == {"right"}
+    assert {row["judged"] for row in rows} == {Verdict.RIGHT.name}
+    assert {row["ended"] for row in rows} <= set(RodStatus.__members__)
+    truths = list(csv.DictReader((folder / "truth.csv").read_text().splitlines()))
+    assert {row["known_by"] for row in truths} == {Witness.BOTH.name}
+    assert {row["ended"] for row in truths} == {RodStatus.CONVERGED.name}
     rates = list(csv.DictReader((folder / "success.csv").read_text().splitlines()))
     assert {row["success"] for row in rates} == {"1.0"}
     assert [row["cases"] for row in rates if row["kind"] == "all"] == ["8", "8"]

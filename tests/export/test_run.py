@@ -187,13 +187,19 @@ def test_an_interrupted_export_leaves_whole_files(
     assert (out / "body.stl").read_bytes() == whole
 
 
-def test_nothing_is_written_where_something_fails(
+def test_a_package_that_does_not_load_stops_only_what_was_asked_for_by_name(
     here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Installed, but without a library of the system, say: nothing is written by half."""
     monkeypatch.setattr("beamopt.export.step.KERNEL", Path("no such file.py"))
-    with pytest.raises(InputError, match="leave step out"):
-        export_design(load_design(SEALED), "a", here / "out")
+    with pytest.raises(InputError) as raised:
+        export_design(load_design(SEALED), "a", here / "out", ExportOptions(formats=FORMATS))
+    assert raised.value.key == "gmsh"
     assert names_in(here / "out") == set()
+    made = export_design(load_design(SEALED), "a", here / "out")
+    assert any(note.startswith("step is left out: ") for note in made.notes)
+    others = {name for name, form in FILES.items() if form != "step"}
+    assert names_in(here / "out") == {*others, "export.json", "provenance.json"}
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.modes import StrainModes
-from beamopt.rod.path import CriticalKind, LoadPath, PathStatus, Stretch, _System, follow_path
+from beamopt.rod.path import CriticalKind, LoadPath, PathStatus, Stretch, follow_path
+from beamopt.rod.path_system import PathSystem
 from beamopt.rod.rod import Base, PointLoad, Rod, Segment
 from beamopt.rod.status import RodStatus
 
@@ -40,7 +41,7 @@ def test_the_plane_path_bifurcates_where_the_smallest_eigenvalue_vanishes(
     asked: float, critical: float
 ) -> None:
     """The linearised analysis: the tangent of the plane shape, followed without the path."""
-    system = _System(frame(asked), 8)
+    system = PathSystem(frame(asked), 8)
 
     def softest(factor: float) -> float:
         shape = system.settle(np.zeros(system.size), factor)

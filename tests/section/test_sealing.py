@@ -190,8 +190,11 @@ def test_no_rule_no_change(grid: PolarGrid, seed: int) -> None:
     points = random_points(grid, seed)
     plain = CrossSection.from_points(grid, points, 4).labels
     np.testing.assert_array_equal(CrossSection.from_points(grid, points, 4, UNSEALED).labels, plain)
-    hardly = SealRules(skin=1e-9)  # through all of the sealing
-    np.testing.assert_array_equal(CrossSection.from_points(grid, points, 4, hardly).labels, plain)
+    unwalled = CrossSection.from_points(grid, points, 0).labels
+    hardly = SealRules(skin=1e-9)  # through all of the sealing, which has walls in mm alone
+    for elements in (0, 4):
+        sealed_labels = CrossSection.from_points(grid, points, elements, hardly).labels
+        np.testing.assert_array_equal(sealed_labels, unwalled)
 
 
 @given(st.sampled_from(GRIDS), seeds)
@@ -259,19 +262,18 @@ def test_a_batch_equals_one_by_one(seed: int, rules: SealRules, wall_elements: i
 
 
 @given(seeds)
-def test_walls_of_elements_come_first(seed: int) -> None:
+def test_walls_of_elements_have_no_effect_on_a_sealed_section(seed: int) -> None:
     points = random_points(RING, seed)
-    walled = CrossSection.from_points(RING, points, 4)
-    skinned = CrossSection.from_points(RING, points, 4, SealRules(1.0))
-    free = sealed(RING, FeaturePoints([3.0], [4.0], [1]), SealRules(1.0)) > 0
-    np.testing.assert_array_equal(skinned.labels, np.where(free, walled.labels, 0))
+    with_and_without = [CrossSection.from_points(RING, points, n, SealRules(1.0)) for n in (4, 0)]
+    np.testing.assert_array_equal(*(one.labels for one in with_and_without))
 
 
-def test_walls_of_elements_come_first_in_drawings_too() -> None:
+def test_walls_of_elements_have_no_effect_on_a_sealed_drawing() -> None:
     shapes = [RingPiece(1, (13.0, 22.0), (0.3, 60.4)), RingPiece(2, (13.0, 22.0), (60.4, 120.0))]
-    walled = CrossSection.from_drawing(PAPER, shapes, 4)
-    skinned = CrossSection.from_drawing(PAPER, shapes, 4, SealRules(1.0))
-    np.testing.assert_array_equal(skinned.labels, walled.labels)
+    drawn = [CrossSection.from_drawing(PAPER, shapes, n, SealRules(1.0)) for n in (4, 0)]
+    np.testing.assert_array_equal(*(one.labels for one in drawn))
+    unsealed = [CrossSection.from_drawing(PAPER, shapes, n) for n in (4, 0)]
+    assert (unsealed[0].labels != unsealed[1].labels).any()
 
 
 MEASURED = [

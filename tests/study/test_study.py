@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.bound.certificate import BoundStatus
 from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
@@ -269,6 +270,7 @@ def test_a_refined_study_has_bounds_losses_ratios_and_times(refined) -> None:
     assert [row["target"] for row in bounds] == list(plan.targets)
     for row in bounds:
         assert float(row["proven_L"]) <= float(row["response_L"]) + 1e-9
+        assert row["ended"] in BoundStatus.__members__
     held = {path.name for path in folder.iterdir()}
     assert held == {*names(plan), "study.json", "runs"}
     assert "Beside the paper" not in (folder / "table.md").read_text()

@@ -46,13 +46,18 @@ TOLERANCES = {
     "STEP as gmsh's kernel reads it": (1e-7, "a kernel's tolerance of 1e-7 mm"),
     "STL, body": (1e-6, "single precision: 1e-6 mm at 25 mm"),
     "STL, all cores": (1e-6, "single precision: 1e-6 mm at 25 mm"),
-    "true circles for the ring's polygons": (4e-3, "the sagitta of 0.04 mm over the radius"),
+    "true circles for the ring's polygons": (
+        1e-6,
+        "polygons of the circles' area; second moments differ with the fourth power of the edges",
+    ),
 }
 """By way: largest difference, and its reason. All but the last two kinds are exact polygons."""
 
 RASTERS = ((32, 90), (64, 180), (128, 360), (256, 720))
-RASTER = 3e-3
-"""Largest difference of the raster of 128 × 360 to the smooth section; see `raster_rows`."""
+RASTER, RULES = 2.2e-3, 4e-3
+"""Differences to the smooth section: in the median on 128 × 360 elements; and what is left of the
+largest where elements are fine, since narrow places are closed by circles there and here by
+polygons. See `raster_rows`."""
 
 
 def checks(full: bool) -> list[Check]:
@@ -199,10 +204,11 @@ def way_rows(designs: Sequence[tuple[str, Design]]) -> Iterator[Row]:
 
 
 def raster_rows(designs: Sequence[tuple[str, Design]]) -> Iterator[Row]:
-    """Rasters against the smooth section; errors fall at least in proportion to the elements' size.
+    """Rasters against the smooth section; the median falls at least with the elements' size.
 
     Elements that a border crosses count as a whole on one side of it: each is off by up to half of
-    its area, and their number grows with the border's length over their size.
+    its area, and their number grows with the border's length over their size. The largest
+    difference does not vanish: of 60 designs three keep 0.2…0.35 % on 512 × 1440 elements.
     """
     off = np.array(
         [
@@ -212,10 +218,14 @@ def raster_rows(designs: Sequence[tuple[str, Design]]) -> Iterator[Row]:
         ]
     )  # fmt: skip
     for size, errors in zip(RASTERS, off.T, strict=True):
-        worst = int(np.argmax(errors))
         allowed = RASTER * RASTERS[2][0] / size[0]
-        check = f"raster {size[0]} × {size[1]}: worst of {len(designs)}, {designs[worst][0]}"
-        yield Row(check, "its elements' size", 0.0, float(errors[worst]), allowed)
+        check, source = f"raster {size[0]} × {size[1]}", "its elements' size"
+        yield Row(
+            f"{check}: median of {len(designs)}", source, 0.0, float(np.median(errors)), allowed
+        )
+        worst = int(np.argmax(errors))
+        check, source = f"{check}: worst, {designs[worst][0]}", "and what rules close"
+        yield Row(check, source, 0.0, float(errors[worst]), 3 * allowed + RULES)
     rate = float(np.log2(np.median(off[:, 0]) / np.median(off[:, -1])) / 3)
     yield Row("rate of the median, or 1 if higher", "border elements", 1.0, min(rate, 1.0), 0.2)
 

@@ -104,12 +104,12 @@ class Case:
 
 
 def checks(full: bool) -> list[Check]:
-    """Five hundred designs; without `full` one of each kind."""
+    """Five hundred designs; without `full` two of each kind, one of them idle."""
     cases = [Case(scene, kind) for scene in SCENES for kind in KINDS]
     ruled = [Case(scene, doubled, rule) for scene in SCENES for rule in RULES]
     return [
-        *(Check(one.name, partial(rows_of, one, 50 if full else 1)) for one in cases),
-        *(Check(one.name, partial(rows_of, one, 13 if full else 1)) for one in ruled),
+        *(Check(one.name, partial(rows_of, one, 50 if full else 2)) for one in cases),
+        *(Check(one.name, partial(rows_of, one, 13 if full else 2)) for one in ruled),
     ]
 
 
@@ -118,20 +118,22 @@ def rows_of(case: Case, count: int) -> Iterator[Row]:
     keys = [*CHEAP, "section.feature_points=30", *RULES.get(case.rule, ())]
     scene, idle = load_scene(case.scene, keys), load_scene(case.scene, [*keys, *IDLE])
     target, rises, wrong, refined = scene.load_target(), [0.0], 0, 0
+    busy = [seed for seed in range(count) if seed % 3 > 0]
     assert target.workspace is not None
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(count):
             start = written(scene, case, seed, Path(folder))
-            found = refine_design(start, idle if seed % 3 == 0 else scene, target)
+            found = refine_design(start, scene if seed in busy else idle, target)
             ended = load_design(found.design.save(Path(folder) / "after.json"))
             before, after = (loss(scene, each, target.workspace.tips) for each in (start, ended))
             rises.append((after - before) / max(before, LEAST))
             status = found.refined.status
-            refined += status is RefineStatus.REFINED
+            refined += seed in busy and status is RefineStatus.REFINED
             wrong += status is RefineStatus.UNCHANGED and ended.source.digest != start.source.digest
     yield Row(f"{case.name}: largest rise of L + R, share of it", SOURCE, 0.0, max(rises), ROUNDING)
     yield Row(f"{case.name}: said to be as it was, and is not", SOURCE, 0, wrong, 0)
-    yield Row(f"{case.name}: refined", SOURCE, count, refined, count)
+    name = f"{case.name}: refined, of those with rounds or flips"
+    yield Row(name, "half of them at least", len(busy), refined, len(busy) / 2)
 
 
 def written(scene: Scene, case: Case, seed: int, folder: Path) -> Design:

@@ -24,7 +24,7 @@ from femcheck.mesh.geo import SectionSizes
 from tests.validation.check import Check, Row
 
 DESIGNS = 5
-SOURCE = "PHYSICS: rigid sections, 1/c"
+SOURCE = "rigid sections: what is left falls with 1/c"
 
 
 def three_chambers() -> Design:

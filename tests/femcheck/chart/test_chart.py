@@ -512,10 +512,12 @@ def test_replies_are_written_and_read() -> None:
 
 @pytest.mark.parametrize("status", Status)
 def test_what_was_cut_short_is_asked_again(status: Status) -> None:
-    """By a clock or a dead process, or at a work limit, which may be a larger one now."""
+    """By a clock or a dead process, or at a work limit where a larger one is asked for now."""
     reply = Reply(AT, (FOUND, Ended(status, 3.0), FOUND))
-    cut = {Status.TIME_OUT, Status.STOPPED, Status.WORK_LIMIT}
-    assert is_final(Measured("a", "b", reply, 1.0)) is (status not in cut)
+    measured = read(json.loads(json.dumps(written(Measured("a", "b", reply, 1.0, "", 50)))))
+    cut = {Status.TIME_OUT, Status.STOPPED}
+    assert is_final(measured, 50) is (status not in cut)
+    assert is_final(measured, 51) is (status not in {*cut, Status.WORK_LIMIT})
 
 
 def test_a_quick_reply_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:

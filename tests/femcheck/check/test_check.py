@@ -73,6 +73,23 @@ def test_a_verdict_that_mesh_or_penalty_could_turn_over_is_uncertain(done: Done)
     assert left == pytest.approx(compared.left, abs=1e-6)
 
 
+def test_a_case_without_an_answer_on_the_coarse_mesh_leaves_a_verdict_uncertain(
+    done: Done,
+) -> None:
+    """What the mesh leaves of it is not known, however well all others are."""
+    compared = done[0].comparison
+    assert compared is not None
+    coarse = compared.solid("coarse", np.inf)
+    tips = coarse.tips.copy()
+    tips[node_index(2, 0, 1)] = np.nan
+    solids = tuple(replace(one, tips=tips) if one is coarse else one for one in compared.solids)
+    checked = replace(done[0], comparison=replace(compared, solids=solids))
+    assert checked.comparison is not None
+    assert checked.comparison.unanswered == 0
+    assert np.isnan(checked.comparison.left)
+    assert not checked.certain
+
+
 def test_of_an_element_without_a_known_order_all_that_the_mesh_changes_counts(
     quick: Done,
 ) -> None:

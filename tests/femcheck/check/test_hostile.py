@@ -15,6 +15,7 @@ import pytest
 
 from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
+from beamopt.folder import differences
 from beamopt.study.pool import InProcess
 from femcheck.check.case import solve_case
 from femcheck.check.checked import Checked
@@ -225,10 +226,8 @@ def test_a_process_that_really_dies(quick: Quick, tmp_path: Path) -> None:
 
 def test_a_question_less_than_what_is_kept_is_another_one() -> None:
     """A constant that was given and is not given now."""
-    from femcheck.check.folder import _differences
-
     kept = {"question": {"constants": {"Jm": 30.0}, "law": "gent"}}
     now = {"question": {"constants": {}, "law": "gent"}}
-    assert list(_differences(kept, now)) == [("question.constants.Jm", 30.0, None)]
-    assert list(_differences(now, kept)) == [("question.constants.Jm", None, 30.0)]
-    assert not list(_differences(kept, kept))
+    assert list(differences(kept, now)) == [("question.constants.Jm", 30.0, None)]
+    assert list(differences(now, kept)) == [("question.constants.Jm", None, 30.0)]
+    assert not list(differences(kept, kept))

@@ -126,6 +126,34 @@ def test_stability_that_is_lost_before_the_law_ends_counts() -> None:
     assert critical >= 49.0
 
 
+def test_a_snap_within_a_step_does_not_lead_beyond_the_law() -> None:
+    """Halfway the path has turned, and at its end it is stable again where no law holds."""
+    script = [
+        *(point(49.0, 130.0, 5.0), point(60.0, 170.0), point(48.0, 145.0, -5.0, 1)),
+        *(point(48.0, 145.0, -5.0, 1), point(48.9, 132.0, -1.0, 1), point(39.0, 180.0, -5.0, 1)),
+    ]
+    done, (status, critical) = trace(script, [55.0], most=150.0)
+    assert status is Status.LIMIT_POINT
+    assert 49.0 <= critical < 50.0
+    assert done.found == [None]
+    assert max(one.volume for one in done.points) <= 150.0
+
+
+def test_a_stop_jumped_over_has_no_answer_beyond_the_law() -> None:
+    fallen = [point(49.0, 130.0, 5.0), point(47.0, 140.0, -5.0, 1), point(55.0, 149.0)]
+    script = [*fallen, point(60.0, 152.0), *[point(60.0, 150.1)] * 30]
+
+    class Wider(Scripted):
+        def at(self, load: float, near: PathPoint) -> PathPoint | None:
+            return point(load, 151.0)
+
+    stepper: Any = Wider(script, most=150.0)
+    done = _Trace(PathSteps(), stepper, [50.0, 100.0], None)
+    status, _ = done.follow()
+    assert status is Status.BEYOND_LAW
+    assert done.found == [None, None]
+
+
 def test_a_path_that_stays_lost_ends_at_its_limit() -> None:
     falling = [point(47.0 - k, 140.0 + 20 * k, -5.0, 1) for k in range(6)]
     done, (status, critical) = trace([point(49.0, 130.0, 5.0), *falling], [50.0])

@@ -493,7 +493,7 @@ def test_step_too_small(soft: Equilibrium) -> None:
 
 def test_too_many_points(soft: Equilibrium) -> None:
     path = follow(soft, [FAR], steps=PathSteps(most_points=4))
-    assert path.status is Status.WORK_LIMIT
+    assert path.status is Status.STEP_TOO_SMALL
     assert len(path.points) == 4
     assert path.last is path.points[-1]
     assert path.critical == path.last.load

@@ -11,6 +11,7 @@ from femcheck.cli.application import run
 from femcheck.continuation.outcome import Status
 from femcheck.material.yeoh import Yeoh
 from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.two_meshes import Agreement
 from femcheck.prediction.verdict import advice, verdict
 from femcheck.report.solid_run import read_solid_run
 from femcheck.report.wording import MEANINGS, meaning
@@ -71,7 +72,9 @@ def test_what_is_said() -> None:
     found = faked({ALIKE: (Status.BEYOND_LAW, 27.24)}, **changes)
     said, way_out = verdict(found), advice(found)
     assert "yeoh describes stretches up to" in said
-    assert "passed at 27.2 kPa (all supplies alike, 27.2 kPa on the coarse mesh, near (" in said
+    ends = next(ends for ends in found.compared if ends.ray.direction == ALIKE)
+    assert (ends.loads, ends.agreement) == ((27.24, 27.24), Agreement.AGREE)
+    assert (ends.standard.status, found.beyond_law) == (Status.BEYOND_LAW, 1)
     assert "1 of 26 combinations has no answer that is known" in said
     assert "exist" not in said
     assert way_out is not None

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 from femcheck.prediction import tables
 from femcheck.prediction.prediction import Prediction
@@ -87,14 +88,12 @@ def test_a_ray_on_two_meshes(
 
 
 def test_meshes_that_differ_make_a_verdict_uncertain() -> None:
-    """Both figures stand in the sentence, in the table and in the summary."""
+    """Both figures stand in the table and in the summary."""
     found = faked({ONE: (LIMIT, 0.325), TWO: (LIMIT, 14.0)}, coarse={ONE: (LIMIT, 8.37)})
     assert not found.certain
-    said = verdict(found)
-    assert "at 0.325 kPa (supply 1 alone, 8.37 kPa on the coarse mesh)" in said
-    assert "uncertain" in said
-    assert "supply 1 alone 0.325 and 8.37 kPa (25.8 times)" in said
-    assert "supply 2 alone" not in said
+    assert [
+        ends.ray.direction for ends in found.compared if ends.agreement is not Agreement.AGREE
+    ] == [ONE]
     summary = summary_of(found)
     assert summary["verdict"]["certain"] is False
     assert summary["meshes"]["agree_up_to_ratio"] == AGREE
@@ -102,6 +101,7 @@ def test_meshes_that_differ_make_a_verdict_uncertain() -> None:
     one, two = summary["limits"][:2]
     assert (one["ends_at_kpa"], one["on_the_coarse_mesh_kpa"]) == (0.325, 8.37)
     assert one["ratio"] == pytest.approx(8.37 / 0.325, rel=1e-5)
+    assert one["ended"] == one["ended_on_the_coarse_mesh"] == Ended(LIMIT).key
     assert one["certain"] is False
     assert two["certain"] is True
     text = files_of(found)["limits.csv"]
@@ -114,9 +114,10 @@ def test_meshes_that_differ_make_a_verdict_uncertain() -> None:
 def test_meshes_that_agree_make_it_certain() -> None:
     found = faked({ONE: (LIMIT, 27.24)}, coarse={ONE: (LIMIT, 27.9)})
     assert found.certain
-    assert "27.9 kPa on the coarse mesh" in verdict(found)
-    assert "uncertain" not in verdict(found)
-    assert summary_of(found)["verdict"]["certain"] is True
+    summary = summary_of(found)
+    assert summary["verdict"]["certain"] is True
+    one = next(one for one in summary["limits"] if one["ends_at_kpa"] is not None)
+    assert (one["on_the_coarse_mesh_kpa"], one["certain"]) == (27.9, True)
     way_out = advice(found)
     assert way_out is not None
     assert "--size" not in way_out
@@ -151,7 +152,9 @@ def test_a_mesh_that_could_turn_the_beams_verdict_over() -> None:
     unsure = faked({}, share=0.049, coarse_share=0.046)
     assert unsure.holds
     assert not unsure.certain
-    assert verdict(unsure).endswith("; uncertain, what the meshes differ by could turn it over")
+    assert unsure.mesh_share == pytest.approx(0.003, rel=1e-3)
+    assert unsure.worst + unsure.mesh_share > unsure.options.agree
+    assert {ends.agreement for ends in unsure.compared} == {Agreement.AGREE}
 
 
 def test_a_coarse_mesh_that_ends_where_the_other_one_does_not() -> None:

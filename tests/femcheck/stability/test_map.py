@@ -63,6 +63,8 @@ def test_limits(whole: Path) -> None:
     assert rows["90"]["over_exact"] == "0.9"
     assert rows["130"]["limit_kPa"] == ""
     assert rows["130"]["status"] == "stable equilibrium"
+    assert [rows[name]["ended"] for name in ("60", "130")] == ["LIMIT_POINT", "STABLE"]
+    assert rows["60"]["finer_ended"] == "LIMIT_POINT"
 
 
 def test_validity(whole: Path) -> None:
