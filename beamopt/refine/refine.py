@@ -20,6 +20,7 @@ from beamopt.streams import Purpose, stream
 __all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine", "rounds_of"]
 
 ROUNDS, SEALED_ROUNDS = 6, 16
+OTHER_ENDS = 3  # ends of rounds that outlines are sought of, besides the best one's
 RATIO_SHARE = 3  # one in so many rounds, once settled, looks for a lower neighbour ratio
 FROM_THE_START = 3  # every so many rounds nothing is kept of the ones before
 
@@ -120,7 +121,7 @@ def refine(
     work.evaluations = 1  # that before
     best = work.rounds(before.points)
     if sealed and best.found:
-        best = work.on_outline(best, counts, before)
+        best = work.on_outlines(best, counts, before)
     better = best.loss <= before.loss and best.verdict.K <= before.verdict.K
     better = better and (best.loss < before.loss or best.verdict.K < before.verdict.K)
     status = RefineStatus.REFINED
@@ -197,6 +198,7 @@ class _Work:
         self.judge, self.settings, self.seed = judge, settings, seed
         self.symmetry, self.callback = symmetry, callback
         self.stages: list[StageRecord] = []
+        self.ends: list[Judged] = []  # of rounds, K no higher than at first
         self.evaluations = self.flips = 0
 
     def rounds(self, points: FeaturePoints) -> Judged:
@@ -223,8 +225,10 @@ class _Work:
             limits = Limits(settings.steps, most, settings.good_enough)
             moved, judged, settled = descend(judge, truth, annealed, orbits, limits, rng)
             self._told(Stage.DESCENT, number, moved, judged)
-            if moved.verdict.K <= start.verdict.K and _is_better(moved, settled, best, is_settled):
-                best, is_settled = moved, settled
+            if moved.verdict.K <= start.verdict.K:
+                self.ends.append(moved)
+                if _is_better(moved, settled, best, is_settled):
+                    best, is_settled = moved, settled
             settled_in = settled_in or (number if is_settled else 0)
             low = enough >= best.verdict.K
             if is_settled and (low or number >= settled_in + rounds // RATIO_SHARE):
@@ -232,8 +236,22 @@ class _Work:
             here = start if number % FROM_THE_START == 0 else best
         return best
 
-    def on_outline(self, best: Judged, truth: Truth, before: Judged) -> Judged:
-        """The last steps, on the polygons that a sealed section is."""
+    def on_outlines(self, best: Judged, truth: Truth, before: Judged) -> Judged:
+        """The last steps, on the polygons that a sealed section is.
+
+        Where they stay above a loss that is good enough, from the ends of other rounds too: a
+        chamber of about the smallest area may be filled in one view only, which no step mends.
+        """
+        found = self._on_outline(best, truth, before)
+        others = sorted((one for one in self.ends if one is not best), key=lambda one: one.loss)
+        for other in others[:OTHER_ENDS]:
+            if found.loss <= self.settings.good_enough:
+                break
+            moved = self._on_outline(other, truth, before)
+            found = moved if moved.loss < found.loss else found
+        return found
+
+    def _on_outline(self, best: Judged, truth: Truth, before: Judged) -> Judged:
         orbits = orbits_of(len(best.points), self.symmetry)
         rng = stream(self.seed, Purpose.REFINEMENT, 0)
         start = truth(best.points)

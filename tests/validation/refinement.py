@@ -45,7 +45,7 @@ class Studied:
     target: str
     overrides: tuple[str, ...] = ()
     iterations: int = 4
-    timed: bool = True
+    is_whole: bool = True
 
     @property
     def name(self) -> str:
@@ -54,9 +54,10 @@ class Studied:
 
 
 def checks(full: bool) -> list[Check]:
-    """Every target with its searches; without `full` one iteration of each, and no times.
+    """Every target with its searches; without `full` one iteration of each, no mean and no times.
 
-    A time is measured in the full suite only: a busy machine must not fail a test.
+    A mean is claimed of 16 searches: four of one target scatter around it (0.62 … 0.76). A time is
+    measured in the full suite only: a busy machine must not fail a test.
     """
     iterations = 4 if full else 1
     studied = [Studied(target, (), iterations, full) for target in TARGETS]
@@ -85,9 +86,9 @@ def rows_of(studied: Studied) -> Iterator[Row]:
     yield _at_most(
         f"{studied.name}: neighbour ratio, after over before, largest", shares.max(), 1.0
     )
-    yield _at_most(f"{studied.name}: the same, mean", shares.mean(), ON_AVERAGE)
-    if not studied.timed:
+    if not studied.is_whole:
         return
+    yield _at_most(f"{studied.name}: the same, mean", shares.mean(), ON_AVERAGE)
     times = np.array([one.refined.seconds / one.seconds for one in outcomes if one.refined])
     yield _at_most(f"{studied.name}: time over the search's own, longest", times.max(), 1.0)
     yield _at_most(f"{studied.name}: the same, mean", times.mean(), 1.0)
