@@ -1,6 +1,8 @@
 """Refinement as a whole: never worse, the same again, and as good as can be."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from beamopt.judge import Judge
 from beamopt.outline.build import build_outline
 from beamopt.refine import refine as room
 from beamopt.refine.orbits import with_cells
-from beamopt.refine.refine import Refined, RefineStatus, Stage, StageRecord, improved, refine
+from beamopt.refine.refine import Refined, RefineStatus, Stage, StageRecord, _Work, improved, refine
 from beamopt.refine.truth import Judged, Truth, View, judged_on
 from beamopt.search_settings import Refining
 from beamopt.section.feature_points import FeaturePoints
@@ -336,3 +338,26 @@ def test_higher_rungs(name: str, share: float) -> None:
     found = refine(judge, points, Refining(flips=2000, walks=8, steps=15, rounds=1))
     assert_kept(judge, points, found)
     assert share * found.before.L > found.after.L
+
+
+def test_outlines_of_other_rounds_are_sought_only_where_the_best_one_s_is_no_good(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A raster that is reached says little of an outline in which a small chamber is filled."""
+    ends: list[Any] = [SimpleNamespace(loss=loss) for loss in (0.03, 0.01, 0.02, 0.04, 0.05)]
+    outlines = {0.01: 5.8, 0.02: 0.3, 0.03: 0.04, 0.04: 0.0, 0.05: 0.0}
+    sought: list[float] = []
+
+    def on_outline(self: Any, best: Any, truth: Any, before: Any) -> Any:
+        sought.append(best.loss)
+        return SimpleNamespace(loss=outlines[best.loss])
+
+    monkeypatch.setattr(_Work, "_on_outline", on_outline)
+    nothing: Any = None
+    work = _Work(nothing, Refining(good_enough=0.05), 0, None, None)
+    work.ends = ends
+    assert work.on_outlines(ends[1], nothing, nothing).loss == 0.04
+    assert sought == [0.01, 0.02, 0.03]
+    sought.clear()
+    assert work.on_outlines(ends[3], nothing, nothing).loss == 0.0
+    assert sought == [0.04]

@@ -56,7 +56,7 @@ class Studied:
 def checks(full: bool) -> list[Check]:
     """Every target with its searches; without `full` one iteration of each, no mean and no times.
 
-    A mean is claimed of 16 searches: four of one target scatter around it (0.62 … 0.76). A time is
+    A mean is claimed of 16 searches: four of one target scatter around it (0.63 … 0.76). A time is
     measured in the full suite only: a busy machine must not fail a test.
     """
     iterations = 4 if full else 1
