@@ -21,6 +21,7 @@ __all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refin
 
 ROUNDS, SEALED_ROUNDS = 6, 16
 OTHER_ENDS = 3  # ends of rounds that outlines are sought of, besides the best one's
+FAR = 2.0  # times a loss that is good enough; their neighbour ratios are higher
 RATIO_SHARE = 3  # one in so many rounds, once settled, looks for a lower neighbour ratio
 FROM_THE_START = 3  # every so many rounds nothing is kept of the ones before
 
@@ -239,13 +240,13 @@ class _Work:
     def on_outlines(self, best: Judged, truth: Truth, before: Judged) -> Judged:
         """The last steps, on the polygons that a sealed section is.
 
-        Where they stay above a loss that is good enough, from the ends of other rounds too: a
+        Where they stay far above a loss that is good enough, from the ends of other rounds too: a
         chamber of about the smallest area may be filled in one view only, which no step mends.
         """
         found = self._on_outline(best, truth, before)
         others = sorted((one for one in self.ends if one is not best), key=lambda one: one.loss)
         for other in others[:OTHER_ENDS]:
-            if found.loss <= self.settings.good_enough:
+            if found.loss <= FAR * self.settings.good_enough:
                 break
             moved = self._on_outline(other, truth, before)
             found = moved if moved.loss < found.loss else found

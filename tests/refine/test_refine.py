@@ -354,7 +354,7 @@ def test_outlines_of_other_rounds_are_sought_only_where_the_best_one_s_is_no_goo
 
     monkeypatch.setattr(_Work, "_on_outline", on_outline)
     nothing: Any = None
-    work = _Work(nothing, Refining(good_enough=0.05), 0, None, None)
+    work = _Work(nothing, Refining(good_enough=0.025), 0, None, None)
     work.ends = ends
     assert work.on_outlines(ends[1], nothing, nothing).loss == 0.04
     assert sought == [0.01, 0.02, 0.03]
