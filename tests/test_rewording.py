@@ -142,7 +142,7 @@ def test_a_chart_that_goes_on_asks_again_for_what_was_interrupted(status: Status
     line = json.loads(json.dumps(written(Measured("a", "b", reply, 1.0))))
     with reworded():
         again = read(line)
-        assert is_final(again) == (status not in CUT_SHORT)
+        assert is_final(again, 1) == (status not in CUT_SHORT)
     assert again.reply.endings == reply.endings
     old = {text for text, key in OLD_STATUSES.items() if key == Ended(status).key}
     for text in old:
