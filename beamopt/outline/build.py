@@ -184,6 +184,8 @@ def _smooth(
         claimed = cell_regions(source, extent)
     else:
         claimed = drawn_regions(source, fine_sagitta(grid))
+    if not rules.sealed and isinstance(source, FeaturePoints):
+        return tuple(parts_of(claim.intersection(ring)) for claim in claimed)
     if not rules.sealed:
         fine = fine_sagitta(grid)
         return tuple(parts_of(solid(claim.intersection(ring), fine)) for claim in claimed)
