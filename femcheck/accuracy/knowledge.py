@@ -120,4 +120,8 @@ def learnt(charts: Sequence[Path]) -> str:
 
 
 if __name__ == "__main__":
-    write_atomic(Path(__file__).with_name(FILE), learnt([Path(name) for name in sys.argv[1:]]))
+    named = [Path(name) for name in sys.argv[1:]]
+    charts = named or [file.parent for file in Path("reports/chart").glob("*/journal.jsonl")]
+    if not charts:
+        sys.exit("knowledge: no chart under reports/chart; name the charts' folders")
+    write_atomic(Path(__file__).with_name(FILE), learnt(charts))
