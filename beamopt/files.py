@@ -65,7 +65,7 @@ def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:
 
 
 class _Lines(list[str]):
-    """What a csv writer writes, a row each; it quotes cells that hold a part of `LINE_END`."""
+    """Lines of a csv writer, a row each; it quotes cells that hold a part of `LINE_END`."""
 
     def write(self, line: str) -> None:
         """Take a row."""

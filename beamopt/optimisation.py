@@ -72,7 +72,7 @@ def optimize(
 
 
 def _only_refining_was_cut(ended: Ended, result: Optimisation) -> bool:
-    """Whether the search had ended before, and refining it now was interrupted."""
+    """True if the search had ended before, and refining it now was interrupted."""
     return ended.timing.judged == 0 and result.status is not ended.status
 
 

@@ -135,7 +135,7 @@ def _with_length(
 
 
 def _assumed(scene: Scene, source: LengthSource) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """What a table does not say, for `bound.json` and for people."""
+    """Assumptions on what a table does not say, for `bound.json` and for people."""
     length, grid, E = scene.actuator.length, scene.grid, scene.actuator.youngs_modulus
     numbers = {
         "length_mm": length,

@@ -90,7 +90,7 @@ def _check_ended(run: Path) -> None:
 
 
 def _ended(summary: Mapping[str, object]) -> StopReason | None:
-    """How a search ended by its summary; None where that does not say."""
+    """Reason why a search ended, by its summary; None where that does not say."""
     name = summary.get("ended", OLD_STOP_REASONS.get(str(summary.get("status"))))
     return StopReason.__members__.get(str(name))
 

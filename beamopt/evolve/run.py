@@ -128,7 +128,7 @@ KEYS = {
 def _beyond(
     journal: Journal, scene: Scene, reason: StopReason, history: Sequence[Generation]
 ) -> InputError:
-    """What to raise where a search was given less than it had before."""
+    """The error of a search that was given less than it had before."""
     key = KEYS[reason]
     table, _, name = key.partition(".")
     value = getattr(getattr(scene, table), name)
