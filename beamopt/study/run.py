@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -19,12 +19,15 @@ from beamopt.model import Count, Model, parse, quantity, read_json
 from beamopt.optimisation import optimize
 from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
-from beamopt.study.pool import processes
+from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
 from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.work import Tasks, check_none_lost, solve_all
 from beamopt.timing import read_times
 
 __all__ = ["run_study"]
+
+Callback = Callable[[Outcome, int, int], None]
 
 
 class StudyFile(Model):
@@ -44,7 +47,7 @@ def run_study(
     *,
     workers: int = 1,
     resume: bool = False,
-    callback: Callable[[Outcome, int, int], None] | None = None,
+    callback: Callback | None = None,
     figures: bool = True,
 ) -> list[Outcome]:
     """Run every search of a study and write its table, figures and designs to `out`.
@@ -65,6 +68,7 @@ def run_study(
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+    NotComputedError : the processes of some searches died; all others are done.
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
@@ -72,12 +76,7 @@ def run_study(
     for run in {run.target: run for run in runs}.values():
         run.scene().load_target()  # complains before anything is written
     _prepare(folder, plan, resume)
-    outcomes: dict[Run, Outcome] = {}
-    for outcome in _outcomes(runs, folder, workers):
-        outcomes[outcome.run] = outcome
-        if callback is not None:
-            callback(outcome, len(outcomes), len(runs))
-    ordered = [outcomes[run] for run in runs]
+    ordered = _outcomes(runs, folder, workers, callback)
     seconds = time.perf_counter() - started
     write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered
@@ -115,15 +114,20 @@ def _refined(found: Refinement, seconds: float) -> RefinedOutcome:
     )
 
 
-def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outcome]:
-    """Outcomes as they come: from this process, or from `workers` others."""
-    if workers == 1:
-        yield from (run_one(run, folder) for run in runs)
-        return
-    with processes(workers) as executor:
-        futures = [executor.submit(run_one, run, folder) for run in runs]
-        for future in as_completed(futures):
-            yield future.result()
+def _outcomes(
+    runs: Sequence[Run], folder: Path, workers: int, callback: Callback | None
+) -> list[Outcome]:
+    """Outcomes of all runs, in this process or in `workers` others."""
+    by_name = {run.name: run for run in runs}
+    work = Tasks(run_one, {name: (run, folder) for name, run in by_name.items()})
+
+    def keep(_: str, outcome: Outcome | None) -> None:
+        if outcome is not None and callback is not None:
+            callback(outcome, len(work.results) - len(work.lost), len(runs))
+
+    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
+    check_none_lost(work, "--resume searches again")
+    return [outcome for name in by_name if (outcome := work.results[name]) is not None]
 
 
 def _prepare(folder: Path, plan: Plan, resume: bool) -> None:

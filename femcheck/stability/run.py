@@ -15,8 +15,8 @@ from beamopt.folder import claim_folder, clear_leftovers
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance, thread_settings
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.folder import PACKAGES
-from femcheck.check.work import solve_all
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
