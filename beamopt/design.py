@@ -17,7 +17,8 @@ from beamopt.climb import Climb, climb
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
 from beamopt.grid_keys import Grid, Levels, WallElements
-from beamopt.model import Model, parse, quantity, read_json
+from beamopt.input_file import read_json
+from beamopt.model import Model, parse, quantity
 from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
 from beamopt.outline.saint_venant import outline_saint_venant

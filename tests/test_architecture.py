@@ -16,6 +16,7 @@ FLOORS = [
     [
         "beamopt.arrays",
         "beamopt.errors",
+        "beamopt.input_file",
         "beamopt.files",
         "beamopt.compiled",
         "beamopt.bundled",
