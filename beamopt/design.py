@@ -16,6 +16,7 @@ from beamopt.chambers import DrawnChamber, Points
 from beamopt.climb import Climb, climb
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
+from beamopt.free_values import FreeTable
 from beamopt.grid_keys import Grid, Levels, WallElements
 from beamopt.input_file import read_json
 from beamopt.model import Model, parse, quantity
@@ -64,7 +65,7 @@ class Design(Model):
     pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
     rod: RodRules = RodRules()
     loads: Loading = Loading()
-    notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
+    notes: FreeTable = Field(default={}, description="anything worth keeping; not read")
 
     @model_validator(mode="after")
     def _is_one_section(self) -> Design:

@@ -25,6 +25,7 @@ FLOORS = [
     ],
     [
         "beamopt.model",
+        "beamopt.free_values",
         "beamopt.table",
         "beamopt.folder",
         "beamopt.file_lock",
