@@ -30,7 +30,9 @@ def _checked(table: dict[str, Any]) -> dict[str, Any]:
         level = [inner for key, container in level for inner in _containers(key, container)]
         if not level:
             return table
-    raise InputError("", f"{level[0][0][:LONG]}…", None, f"nested deeper than {DEEPEST} tables and lists")
+    raise InputError(
+        "", f"{level[0][0][:LONG]}…", None, f"nested deeper than {DEEPEST} tables and lists"
+    )
 
 
 def _containers(key: str, container: Any) -> Iterator[tuple[str, Any]]:
