@@ -16,7 +16,7 @@ from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of

@@ -10,7 +10,7 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers, differences
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.provenance import provenance
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
