@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
 
+from beamopt.brief import Brief
 from beamopt.errors import InputError
 
 __all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity"]
@@ -18,6 +19,10 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 Count = Annotated[int, Field(strict=True)]
 """A whole number; text, booleans and fractions are refused."""
+
+
+PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("_")} - {"model_copy"}
+"""Names of pydantic's that completion leaves out."""
 
 
 class Model(BaseModel):
@@ -48,6 +53,21 @@ class Model(BaseModel):
     def copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # type: ignore[override]
         """Copy as `model_copy` does; pydantic's own would take computed values along."""
         return self.model_copy(update=update, deep=deep)
+
+    def __dir__(self) -> Iterable[str]:
+        """Keys, own methods and properties, and `model_copy`: pydantic's other names are hidden."""
+        models = [model for model in type(self).__mro__[:-1] if issubclass(model, Model)]
+        own = {name for model in models if model is not Model for name in vars(model)}
+        hidden = PYDANTIC - {name for name in own if not name.startswith("model_")}
+        return sorted(set(super().__dir__()) - hidden)
+
+    def __repr_args__(self) -> Iterator[tuple[str, object]]:
+        """Keys that differ from their defaults, with short values."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            usual = field.get_default(call_default_factory=True, validated_data=self.__dict__)
+            if field.is_required() or value != usual:
+                yield name, Brief(value)
 
     def __getstate__(self) -> dict[Any, Any]:
         """Return the state to pickle, without cached values."""

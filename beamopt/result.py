@@ -11,6 +11,7 @@ import numpy as np
 
 from beamopt.answers import Answers
 from beamopt.bound.certificate import Certificate, quick_certificate
+from beamopt.brief import Brief
 from beamopt.design import Design
 from beamopt.evolve.algorithm import Generation
 from beamopt.evolve.stopping import StopReason
@@ -60,6 +61,13 @@ class Optimisation:
     timing: Timing
     refinement: Refinement | None = None
     there: EarlierRefinement = EarlierRefinement.NONE
+
+    def __repr__(self) -> str:
+        return (
+            f"<Optimisation {Brief(self.scene.name)}: L = {self.verdict.L:.4g} mm², "
+            f"{self.rms_distance:.3g} mm a tip, {self.evaluations} sections judged, "
+            f"{self.status.name}>"
+        )
 
     @property
     def seconds(self) -> float:

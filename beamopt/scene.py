@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules, rod_model
+from beamopt.brief import Brief
 from beamopt.bundled import bundled_scenes
 from beamopt.climb import Climb, climb
 from beamopt.design import (
@@ -38,7 +39,7 @@ from beamopt.target import Target, oddities, read_target
 from beamopt.target_choice import TargetChoice
 from beamopt.workspace import Workspace
 
-__all__ = ["Scene", "load_scene"]
+__all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
@@ -107,6 +108,17 @@ class Scene(Model):
         self.seal.check_fits(self.grid.build())
         self.making.check_fits(self.grid.build())
         return self
+
+    def __repr__(self) -> str:
+        search, ring = self.search, self.grid
+        return (
+            f"<Scene {Brief(self.name)}: target {self.target.kind}, "
+            f"r {ring.inner_radius:g}…{ring.outer_radius:g} mm, "
+            f"{search.population} individuals, {search.generations} generations, "
+            f"seed {search.seed}>"
+        )
+
+    __str__ = __repr__
 
     def load_target(self) -> Target:
         """What the tip should reach.

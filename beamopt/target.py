@@ -37,6 +37,11 @@ class Target:
     warnings: tuple[str, ...] = ()
     paths: tuple[FloatArray, ...] = ()
 
+    def __repr__(self) -> str:
+        if self.workspace is not None:
+            return f"<Target: {self.workspace!r}, {len(self.paths)} trajectories>"
+        return f"<Target: {len(self.aim)} tips, {len(self.paths)} trajectories>"
+
     @classmethod
     def of_workspace(
         cls,

@@ -94,6 +94,14 @@ class Workspace:
     levels: tuple[float, float, float]
     tips: FloatArray
 
+    def __repr__(self) -> str:
+        low, middle, high = self.levels
+        farthest = float(np.linalg.norm(self.tips[:, :2], axis=1).max())
+        return (
+            f"<Workspace: {NODES} tips at {low:g}, {middle:g}, {high:g} kPa, "
+            f"up to {farthest:.4g} mm off the axis>"
+        )
+
     def __post_init__(self) -> None:
         if self.tips.shape != (NODES, 3):
             raise ValueError(f"tips have shape {self.tips.shape}: expected (27, 3)")

@@ -49,6 +49,14 @@ class Certificate:
     ring: RingBound | None = None
     seconds: dict[str, float] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        found = None if self.response is None else self.response.loss
+        proven = None if self.proven is None else self.proven.loss
+        ring = None if self.ring is None else self.ring.inner
+        losses = {"found": found, "proven": proven, "in the ring": ring}
+        said = ", ".join(f"{name} {L:.4g} mm²" for name, L in losses.items() if L is not None)
+        return f"<Certificate: {said or self.status.name}>"
+
 
 def quick_certificate(scene: Scene, target: Target) -> Certificate:
     """The response bound alone: some hundredths of a second."""

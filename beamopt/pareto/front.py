@@ -10,6 +10,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.bound.certificate import Certificate
+from beamopt.brief import Brief
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
 from beamopt.pareto.search import Candidate, FrontRecord, front_values
@@ -45,6 +46,14 @@ class Front:
     rejected: Mapping[Status, int]
     timing: Timing
     bound: Certificate
+
+    def __repr__(self) -> str:
+        between = " and ".join(self.objectives)
+        return (
+            f"<Front {Brief(self.scene.name)}: {len(self.designs)} designs between {between}, "
+            f"lowest L = {self.lowest_loss:.4g} mm², {self.evaluations} sections judged, "
+            f"{self.status.name}>"
+        )
 
     @property
     def seconds(self) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamopt.brief import Brief
 from beamopt.files import csv_text
 from beamopt.judge import Verdict
 from beamopt.study.plan import COMBINATIONS, Run
@@ -69,6 +70,10 @@ class Outcome:
     lowest: tuple[float, ...]
     seconds: float
     refined: RefinedOutcome | None = None
+
+    def __repr__(self) -> str:
+        run = Brief(self.run.name)
+        return f"<Outcome {run}: L = {self.final.L:.4g} mm², {self.evaluations} sections judged>"
 
 
 SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {

@@ -70,6 +70,12 @@ class Within:
     reason: str
     source: Source = Source.NOTHING
 
+    def __repr__(self) -> str:
+        return (
+            f"<Within {self.accuracy:g} mm: {self.ending.name}, {self.chosen}, "
+            f"error up to {self.worst:.2g} mm, {len(self.tried)} models tried>"
+        )
+
     @property
     def seconds(self) -> float:
         """Processor time of all of it [s]."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamopt.brief import Brief
 from femcheck.chart.lineup import line_up
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Reference
@@ -50,6 +51,12 @@ class Chart:
     question: Question
     rows: tuple[Row, ...]
     reference: Reference | None
+
+    def __repr__(self) -> str:
+        return (
+            f"<Chart {Brief(self.question.name)}: {len(self.rows)} models, "
+            f"reference within {self.uncertainty:.2g} mm>"
+        )
 
     @classmethod
     def of(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from beamopt.brief import Brief
 from femcheck.check.case import CaseResult
 from femcheck.check.comparison import Comparison
 from femcheck.check.options import CheckOptions
@@ -31,6 +32,13 @@ class Checked:
     quality: Quality | None
     stages: tuple[Stage, ...]
     results: dict[Key, CaseResult]
+
+    def __repr__(self) -> str:
+        name = Brief(self.subject.name)
+        if self.comparison is None:
+            return f"<Checked {name}: {Brief(str(self.failure))}>"
+        ended = "holds" if self.holds else "does not hold"
+        return f"<Checked {name}: {ended}, {self.comparison!r}>"
 
     @property
     def certain(self) -> bool:

@@ -60,6 +60,12 @@ class Comparison:
     refinement: float
     order: float | None
 
+    def __repr__(self) -> str:
+        return (
+            f"<Comparison: {100 * self.worst:.3g} % of displacement at worst, "
+            f"{100 * self.median:.3g} % in the median, {self.unanswered} without an answer>"
+        )
+
     def solid(self, mesh: str, penalty: float) -> Tips:
         """One of the solids."""
         return next(one for one in self.solids if (one.mesh, one.penalty) == (mesh, penalty))

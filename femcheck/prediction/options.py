@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from beamopt.actuator import Actuator
+from beamopt.brief import changed_fields
 from beamopt.errors import InputError
 from femcheck.check.solid_options import SolidOptions
 from femcheck.material.catalogue import law_by_name, modulus_of
@@ -41,6 +42,8 @@ class PredictionOptions(SolidOptions):
     constants: Mapping[str, float] = field(default_factory=dict)
     wound: Wound | None = None
     thread: Thread = field(default_factory=lambda: Thread(1e5))
+
+    __repr__ = changed_fields
 
     def __post_init__(self) -> None:
         SolidOptions.__post_init__(self)

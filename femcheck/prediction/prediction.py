@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
+from beamopt.brief import Brief
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
@@ -49,6 +50,17 @@ class Prediction:
     rays: tuple[Ray, ...]
     places: tuple[tuple[int, float] | None, ...]
     results: Mapping[RayKey, RayResult]
+
+    def __repr__(self) -> str:
+        name = Brief(self.subject.name)
+        if self.failure is not None:
+            return f"<Prediction {name}: {Brief(str(self.failure))}>"
+        found = int(self.is_loaded.sum()) - self.unanswered
+        return (
+            f"<Prediction {name}: {self.options.title}, {found} of {self.is_loaded.sum()} "
+            f"combinations answered, beam off by {100 * self.worst:.3g} % of displacement, "
+            f"safe up to {self.safe_box.pressure:.4g} kPa>"
+        )
 
     @property
     def has_answers(self) -> bool:
