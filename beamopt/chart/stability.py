@@ -10,12 +10,13 @@ from beamopt.chart.journal import Journal
 from beamopt.chart.map_report import NAMES, write_map
 from beamopt.chart.sampling import METHODS, Sample, solve_sample
 from beamopt.errors import InputError
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.study.pool import processes
 
 __all__ = ["run_stability"]
 
 JOURNAL = "journal.jsonl"
+KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema": "beamopt-stability/',))
 
 
 def run_stability(
@@ -42,21 +43,21 @@ def run_stability(
     ------
     InputError : `out` holds something else, or more samples, or can not be written.
     """
-    claim_folder(out, JOURNAL, resume=resume)
-    clear_leftovers(out, (JOURNAL, *NAMES))
-    journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
-    more = max(journal.samples, default=-1) + 1
-    if more > samples:
-        said = f"at least {more}, as the map there has; or name another folder"
-        raise InputError("--samples", "", samples, said)
-    missing = [index for index in range(samples) if index not in journal.samples]
-    for sample in _solved(seed, missing, methods, workers):
-        journal.add(sample)
-        if callback is not None:
-            callback(sample, len(journal.samples))
-    ordered = [journal.samples[index] for index in range(samples)]
-    write_map(out, ordered, seed, figures=figures)
-    journal.path.unlink()  # all of it stands in the tables
+    with claimed(out, KIND, resume=resume):
+        journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
+        clear_leftovers(out, (JOURNAL, *NAMES))
+        more = max(journal.samples, default=-1) + 1
+        if more > samples:
+            said = f"at least {more}, as the map there has; or name another folder"
+            raise InputError("--samples", "", samples, said)
+        missing = [index for index in range(samples) if index not in journal.samples]
+        for sample in _solved(seed, missing, methods, workers):
+            journal.add(sample)
+            if callback is not None:
+                callback(sample, len(journal.samples))
+        ordered = [journal.samples[index] for index in range(samples)]
+        write_map(out, ordered, seed, figures=figures)
+        journal.path.unlink()  # all of it stands in the tables
     return ordered
 
 
