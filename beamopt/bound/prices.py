@@ -10,7 +10,7 @@ from beamopt.arrays import FloatArray
 from beamopt.bound.cells import Box, RayMinimum
 from beamopt.bound.rays import RayBound, RayParts
 from beamopt.bound.wanted import Wanted
-from beamopt.bound.work import ROUND, Work
+from beamopt.bound.work import Work
 
 __all__ = ["FREE_GAP", "GAP", "ray_bound"]
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
@@ -21,7 +21,7 @@ from beamopt.study.pool import processes
 from beamopt.study.work import solve_all
 from femcheck.chart.chart import ACCURACIES, Chart, Row
 from femcheck.chart.figure import chart_figure
-from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
+from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
 from femcheck.check.folder import PACKAGES
@@ -35,6 +35,11 @@ __all__ = ["Budget", "run_chart"]
 
 CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
+KIND = FolderKind("a chart", JOURNAL, ('{"schema": "femcheck-chart/',))
+NAMES = (
+    *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
+    *("chart.svg", "chart.png"),
+)
 GROWTH = 1.8  # a finer model of a series takes at least so many times as long
 
 Progress = Callable[[int, int, str], None]
@@ -78,9 +83,27 @@ def run_chart(
     series = line_up(question, families)
     if not series:
         raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
-    claim_folder(out, JOURNAL, (), resume=resume)
-    journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
-    measured = measured_in(journal, question.law.limits.iterations)
+    with claimed(out, KIND, resume=resume):
+        journal = journal_of(out, asked_of(question))
+        clear_leftovers(out, NAMES)
+        measured = measured_in(journal, question.law.limits.iterations)
+        _measure(question, series, journal, measured, budget or Budget(), workers, progress, pool)
+        chart = chart_of(question, measured)
+        _write(chart, out, workers)
+    return chart
+
+
+def _measure(
+    question: Question,
+    series: Sequence[Series],
+    journal: LineJournal,
+    measured: dict[str, Measured],
+    budget: Budget,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> None:
+    """Ask what is not measured yet."""
     asked = {key_of(model) for one in series for model in one.all}
 
     def keep(_: str, one: Measured) -> None:
@@ -92,11 +115,8 @@ def run_chart(
 
     if progress is not None:
         progress(len(asked & measured.keys()), len(asked), "starting")
-    work = _ChartWork(question, series, budget or Budget(), measured)
+    work = _ChartWork(question, series, budget, measured)
     solve_all(work, lambda: pool(workers), workers, keep)
-    chart = chart_of(question, measured)
-    _write(chart, out, workers)
-    return chart
 
 
 @dataclass

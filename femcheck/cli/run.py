@@ -60,7 +60,8 @@ def run_command(request: RunRequest) -> None:
         say_findings(subject.design, subject.name if len(subjects) > 1 else "")
         if isinstance(options, PredictionOptions):
             _check_material(options, subject)
-        CheckFolder.open(folder, subject, options.question, resume=request.resume)
+        with CheckFolder.open(folder, subject, options.question, resume=request.resume):
+            pass
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
     console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
     everything_holds = True
