@@ -21,7 +21,7 @@ from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import processes
 from beamopt.study.report import names, write_report
-from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
 from beamopt.timing import read_times
 
 __all__ = ["run_study"]
@@ -46,7 +46,7 @@ def run_study(
     resume: bool = False,
     callback: Callable[[Outcome, int, int], None] | None = None,
     figures: bool = True,
-) -> list[Outcome]:
+) -> StudyOutcomes:
     """Run every search of a study and write its table, figures and designs to `out`.
 
     Parameters
@@ -60,7 +60,7 @@ def run_study(
 
     Returns
     -------
-    list of Outcome : in the order of the table.
+    StudyOutcomes : a list of outcomes in the order of the table.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def run_study(
         outcomes[outcome.run] = outcome
         if callback is not None:
             callback(outcome, len(outcomes), len(runs))
-    ordered = [outcomes[run] for run in runs]
+    ordered = StudyOutcomes(outcomes[run] for run in runs)
     seconds = time.perf_counter() - started
     write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered

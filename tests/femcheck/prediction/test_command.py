@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-import femcheck.cli.run
+import femcheck.cli.subjects
 import femcheck.picture
 import femcheck.prediction.run
 from femcheck.cli.application import run
@@ -23,7 +23,7 @@ CHEAP = ["--law", "neo-hookean", "--layers", "2", "--size", "9", "--workers", "1
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(femcheck.cli.run, "Subject", Coarse)
+    monkeypatch.setattr(femcheck.cli.subjects, "Subject", Coarse)
     return tmp_path
 
 
