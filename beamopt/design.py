@@ -17,7 +17,8 @@ from beamopt.design_keys import DesignKeys
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
 from beamopt.grid_keys import Grid, Levels, WallElements
-from beamopt.model import parse, read_json
+from beamopt.input_file import read_json
+from beamopt.model import parse
 from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
 from beamopt.outline.saint_venant import outline_saint_venant

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules
 from beamopt.chambers import DrawnChamber, Points, check_drawing
+from beamopt.free_values import FreeTable
 from beamopt.grid_keys import Grid, Levels, WallElements
 from beamopt.model import Model, quantity
 from beamopt.seal import Seal
@@ -30,7 +31,7 @@ class DesignKeys(Model):
     pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
     rod: RodRules = RodRules()
     loads: Loading = Loading()
-    notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
+    notes: FreeTable = Field(default={}, description="anything worth keeping; not read")
 
     @model_validator(mode="after")
     def _is_one_section(self) -> DesignKeys:

@@ -14,9 +14,9 @@ from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
 from beamopt.files import csv_text, json_text, write_atomic, write_changed
 from beamopt.folder import claim_folder, clear_leftovers, differences
+from beamopt.input_file import read_bytes, read_json
 from beamopt.judge import Status
 from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
-from beamopt.model import read_json
 from beamopt.pairs import aim_csv
 from beamopt.provenance import provenance
 from beamopt.refinement_folder import (
@@ -127,7 +127,7 @@ class RunFolder:
             raise InputError(there, key, before, f"the run to go on with; now asked for: {now}")
         for name, content in sources.items():
             kept = self.path / name
-            if kept.exists() and kept.read_bytes() != content:
+            if kept.exists() and read_bytes(kept) != content:
                 raise InputError(kept, "", None, "differs from the file that the scene names now")
 
     def write_result(self, result: Optimisation, *, figures: bool = True) -> EarlierRefinement:

@@ -18,6 +18,7 @@ FLOORS = [
         "beamopt.brief",
         "beamopt.public_names",
         "beamopt.errors",
+        "beamopt.input_file",
         "beamopt.files",
         "beamopt.frames",
         "beamopt.compiled",
@@ -27,6 +28,7 @@ FLOORS = [
     ],
     [
         "beamopt.model",
+        "beamopt.free_values",
         "beamopt.table",
         "beamopt.folder",
         "beamopt.file_lock",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import Enum
@@ -23,6 +22,7 @@ from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.input_file import parse_toml
 from beamopt.model import parse
 from beamopt.overrides import overridden
 from beamopt.scene import Pressures, Scene, load_scene
@@ -161,7 +161,7 @@ def _with(scene: Scene, overrides: Sequence[str]) -> Scene:
     """A scene with keys replaced."""
     if not overrides:
         return scene
-    data = overridden(tomllib.loads(scene_text(scene)), overrides)
+    data = overridden(parse_toml(scene_text(scene), "--set"), overrides)
     return parse(Scene, data, "--set")
 
 

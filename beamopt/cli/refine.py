@@ -17,7 +17,7 @@ from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.folder import claim_folder
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.named import is_scene, named_design
 from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize

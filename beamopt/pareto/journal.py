@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from beamopt.errors import InputError
+from beamopt.input_file import read_bytes
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import LineJournal
 from beamopt.pareto.scores import Score
@@ -82,7 +83,7 @@ def _digest(scene: Scene) -> str:
     """Of what the target's files hold."""
     state = hashlib.blake2b(digest_size=8)
     for file in scene.target.files:
-        state.update(Path(file).read_bytes())
+        state.update(read_bytes(Path(file)))
     return state.hexdigest()
 
 

@@ -15,7 +15,8 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.files import json_text, write_changed
 from beamopt.folder import claim_folder, clear_leftovers
-from beamopt.model import Count, Model, parse, quantity, read_json
+from beamopt.input_file import read_json
+from beamopt.model import Count, Model, parse, quantity
 from beamopt.optimisation import optimize
 from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run

@@ -10,7 +10,7 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import claim_folder, clear_leftovers, differences
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.provenance import provenance
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
@@ -42,22 +42,23 @@ class CheckFolder:
         ------
         InputError : it holds something already, or another design's verdict or question's.
         """
-        claim_folder(path, MARKER, EARLY, resume=resume)
         asked = {"schema": "femcheck/1", "design": subject.name, "question": dict(question)}
+        text, design_text = json_text(asked), subject.design.json()  # before the folder is made
+        claim_folder(path, MARKER, EARLY, resume=resume)
         there = path / MARKER
         if there.exists():
             kept = read_json(there)
-            for key, before, now in differences(kept, json.loads(json_text(asked))):
+            for key, before, now in differences(kept, json.loads(text)):
                 said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
                 raise InputError(there, key, before, said)
             design = path / "design.json"
-            if design.exists() and design.read_text(encoding="utf-8") != subject.design.json():
+            if design.exists() and design.read_bytes() != design_text.encode():
                 raise InputError(design, "", None, "differs from the design asked for now")
         cases = path / "cases"
         cases.mkdir(exist_ok=True)
         clear_leftovers(cases, None)
-        subject.design.save(path / "design.json")
-        write_atomic(there, json_text(asked))
+        write_atomic(path / "design.json", design_text)
+        write_atomic(there, text)
         return cls(path)
 
     @property

@@ -16,7 +16,7 @@ from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
 from femcheck.prediction.prediction import Prediction
 from femcheck.regression.run import Regression
-from femcheck.stability import ending as cells
+from femcheck.stability.ending import Ending as CellEnding
 from femcheck.stability.found import AxisFound, agreement_of
 
 __all__ = ["code_of"]
@@ -112,8 +112,8 @@ def _of_chart(found: Chart) -> ExitCode:
 
 
 def _of_map(found: Sequence[AxisFound]) -> ExitCode:
-    """Of a map: cells contradict the lines, or some were not solved."""
+    """Of a map: cells contradict the lines, or some were cut short, or there is no solid at all."""
     rows = [row for one in found for row in one.rows]
     endings = {cell.ending for row in rows for _, cell in row.solved}
-    lost = {one for one in endings if one.is_interrupted} | (endings & {cells.Ending.NO_MESH})
-    return _either(bool(agreement_of(rows).against), bool(lost))
+    lost = any(one.is_interrupted for one in endings) or endings == {CellEnding.NO_MESH}
+    return _either(bool(agreement_of(rows).against), lost)

@@ -10,7 +10,8 @@ from pydantic import AfterValidator, Field
 
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
-from beamopt.model import Model, Number, parse, read_json
+from beamopt.input_file import read_json
+from beamopt.model import Model, Number, parse
 from beamopt.model import quantity as described
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import OLD_FAULTS, ended_of

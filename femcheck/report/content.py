@@ -14,7 +14,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import cell_text
-from beamopt.model import read_json, read_text
+from beamopt.input_file import read_json, read_text
 
 __all__ = ["Record", "Table", "read_record", "read_table"]
 

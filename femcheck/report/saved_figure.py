@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beamopt.errors import InputError
-from beamopt.model import read_text
+from beamopt.input_file import read_text
 
 __all__ = ["SavedFigure", "read_figures", "shape_of"]
 
