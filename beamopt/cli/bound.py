@@ -28,9 +28,9 @@ from beamopt.overrides import overridden
 from beamopt.scene import Pressures, Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.table import Table, read_table
-from beamopt.target import COLUMNS, ONLY_OF_POINTS, SAME_PRESSURE, Target
+from beamopt.target import ONLY_OF_POINTS, SAME_PRESSURE, Target
 from beamopt.target_choice import TargetChoice
-from beamopt.workspace import pressure_grid
+from beamopt.workspace import COLUMNS, pressure_grid
 
 __all__ = ["bound_command", "gap_text"]
 

@@ -22,7 +22,7 @@ from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
-from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
 from beamopt.study.work import Tasks, check_none_lost, solve_all
 from beamopt.timing import read_times
 
@@ -53,7 +53,7 @@ def run_study(
     resume: bool = False,
     callback: Callback | None = None,
     figures: bool = True,
-) -> list[Outcome]:
+) -> StudyOutcomes:
     """Run every search of a study and write its table, figures and designs to `out`.
 
     Parameters
@@ -67,7 +67,7 @@ def run_study(
 
     Returns
     -------
-    list of Outcome : in the order of the table.
+    StudyOutcomes : a list of outcomes in the order of the table.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def run_study(
         run.scene().load_target()  # complains before anything is written
     with claimed(folder, KIND, resume=resume):
         _prepare(folder, plan)
-        ordered = _outcomes(runs, folder, workers, callback)
+        ordered = StudyOutcomes(_outcomes(runs, folder, workers, callback))
         seconds = time.perf_counter() - started
         write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered

@@ -19,11 +19,12 @@ from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
 from beamopt.study.pool import processes
 from beamopt.study.work import solve_all
-from femcheck.chart.chart import ACCURACIES, Chart, Row
+from femcheck.chart.chart import ACCURACIES, Chart
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.chart.table import chart_csv
 from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
@@ -33,7 +34,6 @@ from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
-CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
 KIND = FolderKind("a chart", JOURNAL, ('{"schema": "femcheck-chart/',))
 NAMES = (
@@ -196,7 +196,7 @@ def _without(question: Question, model: Model, why: Ended) -> Measured:
 
 
 def _write(chart: Chart, out: Path, workers: int) -> None:
-    write_atomic(out / "chart.csv", csv_text(CHART, [_cells(row) for row in chart.rows]))
+    write_atomic(out / "chart.csv", chart_csv(chart))
     best = [
         (accuracy, one.measured.family, one.measured.resolution, one.error, one.measured.seconds)
         for accuracy in ACCURACIES
@@ -209,11 +209,3 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     about = {"measured_with": chart.made_with, **provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
     save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
-
-
-def _cells(row: Row) -> tuple[object, ...]:
-    one, reply = row.measured, row.measured.reply
-    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
-    found = int(reply.found.sum())
-    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
-    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)
