@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -108,7 +108,17 @@ def new_figure(width: float, height: float, below: float = 0.0) -> Figure:
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     layout = ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below))
-    return Figure(figsize=(width, height), layout=layout)
+    figure = Figure(figsize=(width, height), layout=layout)
+    vars(figure)["_repr_png_"] = partial(_shown, figure)
+    return figure
+
+
+def _shown(figure: Figure) -> bytes:
+    """The figure as notebooks show it; they know by themselves those of pyplot only."""
+    stream = io.BytesIO()
+    with _our_settings():
+        figure.savefig(stream, format="png", dpi=100)
+    return stream.getvalue()
 
 
 def log_losses(axes: Axes, losses: FloatArray) -> None:

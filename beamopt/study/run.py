@@ -13,8 +13,8 @@ from pydantic import Field
 
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
-from beamopt.files import json_text, write_changed
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.files import json_text, refuse_link, write_changed
+from beamopt.folder import FolderKind, claimed, clear_leftovers, own_subfolder
 from beamopt.input_file import read_json
 from beamopt.model import Count, Model, parse, quantity
 from beamopt.optimisation import optimize
@@ -22,13 +22,16 @@ from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
 from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
-from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
 from beamopt.study.work import Tasks, check_none_lost, solve_all
 from beamopt.timing import read_times
 
 __all__ = ["run_study"]
 
 Callback = Callable[[Outcome, int, int], None]
+
+
+KIND = FolderKind("a study", "study.json", ('{\n "schema": "beamopt-study/',))
 
 
 class StudyFile(Model):
@@ -50,7 +53,7 @@ def run_study(
     resume: bool = False,
     callback: Callback | None = None,
     figures: bool = True,
-) -> list[Outcome]:
+) -> StudyOutcomes:
     """Run every search of a study and write its table, figures and designs to `out`.
 
     Parameters
@@ -64,7 +67,7 @@ def run_study(
 
     Returns
     -------
-    list of Outcome : in the order of the table.
+    StudyOutcomes : a list of outcomes in the order of the table.
 
     Raises
     ------
@@ -76,16 +79,18 @@ def run_study(
     runs = plan.runs()
     for run in {run.target: run for run in runs}.values():
         run.scene().load_target()  # complains before anything is written
-    _prepare(folder, plan, resume)
-    ordered = _outcomes(runs, folder, workers, callback)
-    seconds = time.perf_counter() - started
-    write_report(folder, ordered, plan, seconds, workers, figures=figures)
+    with claimed(folder, KIND, resume=resume):
+        _prepare(folder, plan)
+        ordered = StudyOutcomes(_outcomes(runs, folder, workers, callback))
+        seconds = time.perf_counter() - started
+        write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered
 
 
 def run_one(run: Run, folder: Path) -> Outcome:
     """Run one search, or go on with it where it was left."""
     own = folder / "runs" / run.name
+    refuse_link(own)
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
@@ -131,8 +136,8 @@ def _outcomes(
     return [outcome for name in by_name if (outcome := work.results[name]) is not None]
 
 
-def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
-    """Make the folder, or check that the study in it is the one asked for."""
+def _prepare(folder: Path, plan: Plan) -> None:
+    """Check that the study in the folder, if any, is the one asked for; keep what is asked."""
     asked = StudyFile(
         seed=plan.seed,
         overrides=list(plan.overrides),
@@ -140,12 +145,12 @@ def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
         targets=list(plan.targets),
         refine=plan.refine,
     )
-    there = folder / "study.json"
-    claim_folder(folder, there.name, resume=resume)
+    there = folder / KIND.marker
     if there.exists():
         _check_same(there, asked)
     clear_leftovers(folder, (there.name, *names(plan)))
     write_changed(there, json_text(asked.model_dump(by_alias=True)))
+    own_subfolder(folder / "runs")
 
 
 def _check_same(there: Path, asked: StudyFile) -> None:

@@ -13,17 +13,18 @@ import numpy as np
 
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
 from beamopt.study.pool import processes
 from beamopt.study.work import solve_all
-from femcheck.chart.chart import ACCURACIES, Chart, Row
+from femcheck.chart.chart import ACCURACIES, Chart
 from femcheck.chart.figure import chart_figure
-from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
+from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.chart.table import chart_csv
 from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
@@ -33,8 +34,12 @@ from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
-CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
+KIND = FolderKind("a chart", JOURNAL, ('{"schema": "femcheck-chart/',))
+NAMES = (
+    *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
+    *("chart.svg", "chart.png"),
+)
 GROWTH = 1.8  # a finer model of a series takes at least so many times as long
 
 Progress = Callable[[int, int, str], None]
@@ -78,9 +83,27 @@ def run_chart(
     series = line_up(question, families)
     if not series:
         raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
-    claim_folder(out, JOURNAL, (), resume=resume)
-    journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
-    measured = measured_in(journal, question.law.limits.iterations)
+    with claimed(out, KIND, resume=resume):
+        journal = journal_of(out, asked_of(question))
+        clear_leftovers(out, NAMES)
+        measured = measured_in(journal, question.law.limits.iterations)
+        _measure(question, series, journal, measured, budget or Budget(), workers, progress, pool)
+        chart = chart_of(question, measured)
+        _write(chart, out, workers)
+    return chart
+
+
+def _measure(
+    question: Question,
+    series: Sequence[Series],
+    journal: LineJournal,
+    measured: dict[str, Measured],
+    budget: Budget,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> None:
+    """Ask what is not measured yet."""
     asked = {key_of(model) for one in series for model in one.all}
 
     def keep(_: str, one: Measured) -> None:
@@ -92,11 +115,8 @@ def run_chart(
 
     if progress is not None:
         progress(len(asked & measured.keys()), len(asked), "starting")
-    work = _ChartWork(question, series, budget or Budget(), measured)
+    work = _ChartWork(question, series, budget, measured)
     solve_all(work, lambda: pool(workers), workers, keep)
-    chart = chart_of(question, measured)
-    _write(chart, out, workers)
-    return chart
 
 
 @dataclass
@@ -176,7 +196,7 @@ def _without(question: Question, model: Model, why: Ended) -> Measured:
 
 
 def _write(chart: Chart, out: Path, workers: int) -> None:
-    write_atomic(out / "chart.csv", csv_text(CHART, [_cells(row) for row in chart.rows]))
+    write_atomic(out / "chart.csv", chart_csv(chart))
     best = [
         (accuracy, one.measured.family, one.measured.resolution, one.error, one.measured.seconds)
         for accuracy in ACCURACIES
@@ -189,11 +209,3 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     about = {"measured_with": chart.made_with, **provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
     save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
-
-
-def _cells(row: Row) -> tuple[object, ...]:
-    one, reply = row.measured, row.measured.reply
-    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
-    found = int(reply.found.sum())
-    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
-    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)

@@ -59,12 +59,24 @@ def check_design(
     ------
     InputError : `out` holds something else, or can not be written.
     """
-    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
+        checked = _checked(subject, folder, options, workers, progress, pool)
+        _write(folder, checked)
+    return checked
+
+
+def _checked(
+    subject: Subject,
+    folder: CheckFolder,
+    options: CheckOptions,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> Checked:
+    """Solve what is not solved yet."""
     sections = section_meshes(subject, options)
     if isinstance(sections, MeshFailure):
-        checked = Checked(subject, options, sections, None, None, None, (), {})
-        _write(folder, checked)
-        return checked
+        return Checked(subject, options, sections, None, None, None, (), {})
     stages = _stages(subject, options, *sections)
     schedule = Schedule(stages, subject.design.pressures, options.limits)
     _take_kept(folder.cases, schedule)
@@ -82,9 +94,7 @@ def check_design(
     compared = compare(subject, stages, schedule.results)
     geometry = geometry_steps(subject, sections[0])
     quality = quality_of(subject.outline, sections[0])
-    checked = Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
-    _write(folder, checked)
-    return checked
+    return Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
 
 
 def _write(folder: CheckFolder, checked: Checked) -> None:

@@ -20,6 +20,7 @@ from femcheck.check.folder import CheckFolder
 from femcheck.check.meshes import heights_of, section_meshes
 from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
+from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import quality_of
 from femcheck.prediction.figures import axis_figure, paths_figure
@@ -64,12 +65,25 @@ def predict_design(
     InputError : `out` holds something else, or the material contradicts the design's moduli.
     """
     law = options.law_for(subject.design.actuator)
-    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
+        found = _predicted(subject, folder, options, law, workers, progress, pool)
+        _write(folder, found)
+    return found
+
+
+def _predicted(
+    subject: Subject,
+    folder: CheckFolder,
+    options: PredictionOptions,
+    law: Law,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> Prediction:
+    """Follow what was not followed yet."""
     sections = section_meshes(subject, options)
     if isinstance(sections, MeshFailure):
-        found = Prediction(subject, options, law, sections, None, {}, (), (), {})
-        _write(folder, found)
-        return found
+        return Prediction(subject, options, law, sections, None, {}, (), (), {})
     wound = None if options.wound is None else (options.wound, options.thread)
     heights = heights_of(subject, options)
     solids = {
@@ -99,9 +113,7 @@ def predict_design(
     found = follow()
     # no verdict is to stand on one mesh alone
     work.asked = {n for n in found.decisive if not found.result(n).status.is_interrupted}
-    found = follow()
-    _write(folder, found)
-    return found
+    return follow()
 
 
 def _take_kept(folder: CheckFolder, work: RayWork) -> None:
@@ -136,9 +148,6 @@ def _write(folder: CheckFolder, found: Prediction) -> None:
     folder.write(tables_of(found))
     if not found.has_answers or not found.rays:
         folder.without_answer()
-        for name in FIGURES:
-            for ending in ("png", "svg"):
-                (folder.path / f"{name}.{ending}").unlink(missing_ok=True)
         return
     for name, draw in zip(FIGURES, (paths_figure, axis_figure), strict=True):
         ends = [folder.path / f"{name}.{ending}" for ending in ("png", "svg")]

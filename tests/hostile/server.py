@@ -138,7 +138,7 @@ def _open_streams(case: dict[str, Any], outputs: list[Path]) -> None:
             os.dup2(opened, number)
             os.close(opened)
         encoding = case.get("encoding", "utf-8")
-        stream = open(number, "w", encoding=encoding, closefd=False)  # noqa: PTH123, SIM115
+        stream = open(number, "w", encoding=encoding, closefd=False)  # noqa: SIM115
         setattr(sys, name, stream)
 
 

@@ -19,9 +19,7 @@ RESUMED = ["--out", "run", "--resume", *(f"--set={key}" for key in ("search.gene
 READ: dict[str, tuple[str, str, tuple[str, ...], str, tuple[str, ...]]] = {}
 
 
-def reads(
-    line: str, damaged: str, *files: str, damages: tuple[str, ...] = tuple(ALL)
-) -> None:
+def reads(line: str, damaged: str, *files: str, damages: tuple[str, ...] = tuple(ALL)) -> None:
     program, _, rest = line.partition(" ")
     READ[f"{line} ({damaged})"] = (program, rest, files, damaged, damages)
 
