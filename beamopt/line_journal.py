@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from beamopt.errors import InputError
-from beamopt.files import refuse_link, write_atomic
+from beamopt.files import naming, refuse_link, write_atomic
 from beamopt.folder import differences
 
 __all__ = ["LineJournal", "with_digest", "without_digest"]
@@ -137,5 +137,5 @@ class LineJournal:
         """Keep a result."""
         self.entries.append(entry)
         text = json.dumps(entry)
-        with self.path.open("a", encoding="utf-8") as stream:
+        with naming(self.path), self.path.open("a", encoding="utf-8") as stream:
             stream.write((with_digest(text) if self.digests else text) + "\n")

@@ -91,8 +91,8 @@ def run_chart(
     InputError : `out` holds files, or can not be written; the scene has nothing to solve.
     """
     load, limits = workload_of(scene, seed), limits or Limits()
-    reference = reference_of(load)
     with claimed(out, KIND, resume=False):
+        reference = reference_of(load)
         rows: list[Measured] = []
         chosen = all_methods(parents_on_grid()) if methods is None else methods
         for measured in (

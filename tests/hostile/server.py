@@ -1,7 +1,7 @@
 """Commands run one after another, each in a fork of a process that has loaded everything.
 
-Reads a case a line, writes a result a line, both JSON. A fork takes a tenth of a second, a process of
-its own two.
+Reads a case a line, writes a result a line, both JSON. A fork takes a tenth of a second, a process
+of its own two.
 """
 
 from __future__ import annotations
@@ -82,7 +82,9 @@ def run_case(case: dict[str, Any]) -> dict[str, Any]:
             hung = True
             os.kill(child, signal.SIGKILL)
         time.sleep(0.002)
-    texts = [{end: _text(place / f"{number}.{end}") for end in ENDS} for number in range(len(lines))]
+    texts = [
+        {end: _text(place / f"{number}.{end}") for end in ENDS} for number in range(len(lines))
+    ]
     ended = [{**one, "code": int(one["code"]) if one["code"] else None} for one in texts]
     return {"hung": hung, "memory": used.ru_maxrss * 1024, "lines": ended}
 
