@@ -19,6 +19,7 @@ from beamopt.target import Target
 
 __all__ = ["BoundStatus", "Certificate", "Progress", "certificate", "quick_certificate"]
 
+
 class BoundStatus(Enum):
     """Whether there is a bound; the value is the text shown to people."""
 
