@@ -216,12 +216,15 @@ def bound(
     out: Annotated[
         Path | None, typer.Option(help="Folder for numbers, ideal tips and figures.")
     ] = None,
+    work: Annotated[
+        float | None, typer.Option(help="Most tips to compute [millions]; left out: 500.")
+    ] = None,
     overrides: Overrides = None,
 ) -> None:
     """Say how low the loss L can be at all, whatever the section."""
     from beamopt.cli.bound import bound_command
 
-    bound_command(subject, out, overrides or [])
+    bound_command(subject, out, work, overrides or [])
 
 
 @app.command()

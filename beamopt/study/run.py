@@ -94,13 +94,13 @@ def run_one(run: Run, folder: Path) -> Outcome:
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
-    last, times = result.history[-1], read_times(own / "timing.csv")
+    last, times = result.last, read_times(own / "timing.csv")
     return Outcome(
         run,
         last.best.verdict,
         last.best_ever.verdict.L,
         result.evaluations,
-        tuple(record.best.verdict.L for record in result.history),
+        tuple(record.best_loss for record in result.history),
         times.get("search", math.nan),
         None
         if result.refinement is None

@@ -82,7 +82,9 @@ def run_case(case: dict[str, Any]) -> dict[str, Any]:
             hung = True
             os.kill(child, signal.SIGKILL)
         time.sleep(0.002)
-    texts = [{end: _text(place / f"{number}.{end}") for end in ENDS} for number in range(len(lines))]
+    texts = [
+        {end: _text(place / f"{number}.{end}") for end in ENDS} for number in range(len(lines))
+    ]
     ended = [{**one, "code": int(one["code"]) if one["code"] else None} for one in texts]
     return {"hung": hung, "memory": used.ru_maxrss * 1024, "lines": ended}
 
