@@ -16,7 +16,7 @@ from beamopt.study.pool import processes
 __all__ = ["run_stability"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema": "beamopt-stability/',))
+KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema":"beamopt-stability/',))
 
 
 def run_stability(

@@ -27,7 +27,7 @@ from beamopt.timing import read_times
 __all__ = ["run_study"]
 
 
-KIND = FolderKind("a study", "study.json", ('{\n "schema": "beamopt-study/',))
+KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
 class StudyFile(Model):

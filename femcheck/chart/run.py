@@ -34,7 +34,7 @@ __all__ = ["Budget", "run_chart"]
 
 CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
-KIND = FolderKind("a chart", JOURNAL, ('{"schema": "femcheck-chart/',))
+KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
 NAMES = (
     *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
     *("chart.svg", "chart.png"),

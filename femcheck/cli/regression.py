@@ -12,7 +12,7 @@ from rich.table import Table
 
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.files import csv_text, write_atomic
+from beamopt.files import check_replaceable, csv_text, write_atomic
 from beamopt.provenance import thread_settings
 from femcheck.continuation.ended import Ended
 from femcheck.regression.held_design import HeldDesign
@@ -53,9 +53,17 @@ def baseline_command(
 
 
 def regress_command(
-    designs: list[str], baseline: Path, meshes: Path, workers: int, out: Path | None
+    designs: list[str],
+    baseline: Path,
+    meshes: Path,
+    workers: int,
+    out: Path | None,
+    *,
+    force: bool = False,
 ) -> None:
     """Compute what is held anew; end with 1 and a table if anything moved."""
+    if out is not None:
+        check_replaceable(out, HEADER, "femcheck regress", force=force)
     started = perf_counter()
     _say_threads(workers)
     with _Shown() as shown:
