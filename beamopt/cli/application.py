@@ -180,11 +180,14 @@ def show(
         Path | None,
         typer.Option(help="Figure to write (.png, .svg, .pdf); NAME.png here if left out."),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no such figure.")
+    ] = False,
 ) -> None:
     """Draw a design's section beside its workspace, and the section in the terminal."""
     from beamopt.cli.show import show_command
 
-    show_command(design, out)
+    show_command(design, out, force=force)
 
 
 @app.command()

@@ -21,7 +21,7 @@ from beamopt.timing import write_times
 
 __all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
 
-KIND = FolderKind("a front", "journal.jsonl", ('{"schema": "beamopt-pareto/',))
+KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
 DESIGN = re.compile(r"\bfront-\d{3,}\.json\b")
 NAMES = (

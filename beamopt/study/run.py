@@ -31,7 +31,7 @@ __all__ = ["run_study"]
 Callback = Callable[[Outcome, int, int], None]
 
 
-KIND = FolderKind("a study", "study.json", ('{\n "schema": "beamopt-study/',))
+KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
 class StudyFile(Model):
