@@ -43,6 +43,14 @@ class Certificate:
     proven : over the response matrices in a box; None where it was not asked for, as `ring`.
     ring : numerical, over what chambers in the scene's ring can have.
     seconds : time of each part.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> bound: beamopt.Certificate = beamopt.optimize(scene).bound
+    >>> bound.status.name
+    'BOUNDED'
     """
 
     status: BoundStatus
@@ -75,7 +83,15 @@ def quick_certificate(scene: Scene, target: Target) -> Certificate:
 
 
 def certificate(scene: Scene, target: Target, callback: Progress | None = None) -> Certificate:
-    """All three bounds: seconds."""
+    """All three bounds: seconds.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("hand-drawn-workspace")
+    >>> beamopt.certificate(scene, scene.load_target())
+    <Certificate: found 65.58 mm², proven 65.52 mm², in the ring 65.58 mm²>
+    """
     quick = quick_certificate(scene, target)
     wanted, response = quick.wanted, quick.response
     if wanted is None or response is None:

@@ -66,6 +66,14 @@ def run_study(
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> small = ("search.generations=0",)
+    >>> plan = beamopt.Plan(1, overrides=small, targets=("random-section",), refine=False)
+    >>> len(beamopt.run_study("study", plan, figures=False))
+    4
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
