@@ -2,48 +2,158 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Collection, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from beamopt.errors import InputError
+from beamopt.file_lock import HeldElsewhereError, locked
+from beamopt.files import refuse_link
+from beamopt.scratch import clear_scratch
 
-__all__ = ["claim_folder", "clear_leftovers", "design_file", "differences"]
+__all__ = [
+    "LOCK",
+    "FolderKind",
+    "claimed",
+    "clear_leftovers",
+    "design_file",
+    "differences",
+    "own_subfolder",
+]
+
+LOCK = ".beamopt.lock"
+"""File that a command has in its folder while it writes there; a kill leaves it."""
 
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
 
 
-def claim_folder(path: Path, marker: str, early: Collection[str] = (), *, resume: bool) -> None:
-    """Make a folder, or check that what it holds may be gone on with.
+@dataclass(frozen=True, slots=True)
+class FolderKind:
+    """What tells the folders of one command from all others.
 
-    Parameters
-    ----------
-    marker : the file that tells a folder of this kind.
-    early : files that such a folder may hold before it has its marker.
-    resume : whether it may hold anything.
+    name : of the command. marker : a file that each of them has once the command has begun, or,
+    where it can not go on, once it is done.
+    begins : how the marker begins; a text for each version.
+    goes_on : whether the command can go on with one.
+    """
+
+    name: str
+    marker: str
+    begins: tuple[str, ...]
+    goes_on: bool = True
+
+    def is_of(self, folder: Path) -> bool:
+        """Whether a folder has the marker; a kill may have left only a part of its beginning."""
+        texts = [text.encode() for text in self.begins]
+        try:
+            with (folder / self.marker).open("rb") as stream:
+                head = stream.read(max(map(len, texts)))
+        except FileNotFoundError:
+            return False
+        return any(head.startswith(text) or text.startswith(head) for text in texts)
+
+
+@contextmanager
+def claimed(path: Path, kind: FolderKind, *, resume: bool) -> Iterator[None]:
+    """Make a folder, or take an empty one or one of the same kind; lock it while it is written.
+
+    A folder is of a kind by its marker, or by the lock file of a command that was killed in it. In
+    such a folder files under the names that the command writes are the command's.
+
+    resume : whether the folder may hold anything.
 
     Raises
     ------
-    InputError : it holds files and `resume` is off, or it is of another kind, or can not be made.
+    InputError : it holds files and `resume` is off; it is of another kind; it holds a link; another
+        process is writing to it; or it can not be made.
     """
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        held = {item.name for item in path.iterdir() if not LEFTOVER.fullmatch(item.name)}
-    except OSError as error:
-        reason = (error.strerror or "can not be made").lower()
-        raise InputError(path, "", None, f"{reason}; name a folder that can be written") from None
-    if held and not resume:
+    with ExitStack() as held:
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            _check(path, kind, resume)  # before there is a lock file in it
+            lock = held.enter_context(locked(path / LOCK))
+            _check(path, kind, resume)  # what another process wrote meanwhile
+            _say(lock, kind.name)
+        except HeldElsewhereError:
+            said = "another process is writing to this folder"
+            raise InputError(path, "", None, said) from None
+        except OSError as error:
+            said = f"{(error.strerror or 'can not be made').lower()}; name a folder to write to"
+            raise InputError(path, "", None, said) from None
+        clear_scratch()
+        owner, is_done = os.getpid(), False
+        try:
+            yield
+            is_done = True
+        finally:
+            if os.getpid() == owner and (is_done or not _is_unfinished(path, kind)):
+                (path / LOCK).unlink(missing_ok=True)
+
+
+def _is_unfinished(path: Path, kind: FolderKind) -> bool:
+    """Whether a folder holds files that only its lock file tells from another's."""
+    return path.is_dir() and bool(_names(path)) and not kind.is_of(path)
+
+
+def _say(lock: BinaryIO, name: str) -> None:
+    """Write which command has the folder, for a claim after a kill."""
+    lock.truncate(0)
+    lock.write(name.encode())
+
+
+def _check(path: Path, kind: FolderKind, resume: bool) -> None:
+    """Refuse a folder that may not be written to."""
+    names = _names(path)
+    for name in (*names, LOCK):
+        refuse_link(path / name)
+    if not names:
+        return
+    is_done, is_cut = kind.is_of(path), _was_cut(path, kind)
+    if not (is_done or is_cut):
+        said = f"holds files, but no {kind.marker} of {kind.name}: nothing to go on with"
+        raise InputError(path, "", None, f"{said}; name another folder")
+    if kind.goes_on and not resume:
         raise InputError(path, "", None, "holds files already; --resume goes on with what is there")
-    if marker not in held and held - set(early):
-        raise InputError(path, "", None, f"holds files but no {marker}; nothing to go on with")
+    if not kind.goes_on and is_done:
+        raise InputError(path, "", None, "holds files already; name another folder")
 
 
-def clear_leftovers(path: Path, names: Collection[str] | None) -> None:
-    """Delete what a kill left of writing any of the files `names`; None: of any file."""
+def _names(path: Path) -> list[str]:
+    """What a folder holds, apart from what a kill left."""
+    names = sorted(item.name for item in path.iterdir())
+    return [name for name in names if name != LOCK and not LEFTOVER.fullmatch(name)]
+
+
+def _was_cut(path: Path, kind: FolderKind) -> bool:
+    try:
+        return (path / LOCK).read_bytes() == kind.name.encode()
+    except FileNotFoundError:
+        return False
+
+
+def own_subfolder(path: Path) -> Path:
+    """Make a folder within a claimed one, and delete what a kill left in it.
+
+    Raises
+    ------
+    InputError : it is a link.
+    """
+    refuse_link(path)
+    path.mkdir(exist_ok=True)
+    clear_leftovers(path, ("*",))
+    return path
+
+
+def clear_leftovers(path: Path, names: Collection[str]) -> None:
+    """Delete what a kill left of writing any of the files `names`, which may be patterns."""
     for item in path.iterdir():
         name = item.name[1:].rpartition(".tmp")[0].rpartition(".")[0]
-        if LEFTOVER.fullmatch(item.name) and (names is None or name in names):
+        if LEFTOVER.fullmatch(item.name) and any(fnmatchcase(name, one) for one in names):
             item.unlink(missing_ok=True)
 
 

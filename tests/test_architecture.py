@@ -32,6 +32,7 @@ FLOORS = [
         "beamopt.table",
         "beamopt.folder",
         "beamopt.file_lock",
+        "beamopt.scratch",
         "beamopt.line_journal",
         "beamopt.streams",
         "beamopt.timing",

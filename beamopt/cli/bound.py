@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,13 @@ import numpy as np
 from rich.console import Console
 
 from beamopt.arrays import FloatArray
-from beamopt.bound.certificate import Certificate, Progress, certificate
+from beamopt.bound.certificate import BoundStatus, Certificate, Progress, certificate
 from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
-from beamopt.bound_folder import claim_bound_folder, write_bound
+from beamopt.bound_folder import claimed_for_bound, write_bound
+from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.design import load_design
@@ -49,15 +50,17 @@ def bound_command(subject: str, out: Path | None, overrides: Sequence[str]) -> N
     """Say how low L can be, whatever the section, and write it where asked."""
     scene, notes, assumed = _scene_of(subject, overrides)
     target = scene.load_target()
-    if out is not None:
-        claim_bound_folder(out, scene)
-    with _spinner() as say:
-        found = certificate(scene, target, say)
-    if out is not None:
-        write_bound(out, scene, target, found, assumed)
+    with nullcontext() if out is None else claimed_for_bound(out, scene):
+        with _spinner() as say:
+            found = certificate(scene, target, say)
+        if out is not None:
+            write_bound(out, scene, target, found, assumed)
     for note in (*notes, *target.warnings):
         console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
+    end_with(
+        ExitCode.HOLDS if found.status is BoundStatus.BOUNDED else ExitCode.NOT_COMPUTED,
+    )
 
 
 def _scene_of(

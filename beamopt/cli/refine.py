@@ -16,14 +16,14 @@ from beamopt.cli.progress import console, progress_bar
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
-from beamopt.folder import claim_folder
+from beamopt.folder import claimed
 from beamopt.input_file import read_json
 from beamopt.named import is_scene, named_design
 from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
-from beamopt.refinement_folder import write_refined_design
+from beamopt.refinement_folder import KIND, write_refined_design
 from beamopt.result import EarlierRefinement
 from beamopt.scene import Scene, load_scene
 
@@ -107,10 +107,10 @@ def _refined_file(
     scene = load_scene(scene_name, overrides)
     target = scene.load_target()
     folder = out or Path(f"{file.stem}-refined")
-    claim_folder(folder, "refined.json", resume=False)
-    with stages_shown(scene) as show:
-        found = refine_design(design, scene, target, show)
-    write_refined_design(folder, scene, target, found)
+    with claimed(folder, KIND, resume=False):
+        with stages_shown(scene) as show:
+            found = refine_design(design, scene, target, show)
+        write_refined_design(folder, scene, target, found)
     return scene, found, quick_certificate(scene, target), folder
 
 

@@ -16,10 +16,9 @@ from beamopt.bound.certificate import quick_certificate
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.evolve.variation import Variation
-from beamopt.file_lock import locked
-from beamopt.folder import claim_folder
+from beamopt.folder import claimed
 from beamopt.judge import in_parts
-from beamopt.pareto.folder import JOURNAL, begin_folder, write_front
+from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.scores import Score, scored
@@ -82,9 +81,8 @@ def find_front(
     with ExitStack() as held:
         journal = None
         if folder is not None:
-            claim_folder(folder, JOURNAL, resume=resume)
-            held.enter_context(locked(folder / JOURNAL))
-            journal = FrontJournal(folder / JOURNAL, scene, objectives, population)
+            held.enter_context(claimed(folder, KIND, resume=resume))
+            journal = FrontJournal(folder / KIND.marker, scene, objectives, population)
             _check_length(journal, scene)
         history: list[FrontRecord] = []
         judged = partial(scored, judge)

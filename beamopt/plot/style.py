@@ -54,6 +54,8 @@ SERIES_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#8a5aa8")
 BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
 """Where a legend stands that would cover what is drawn."""
 
+TICK = r"$\mathdefault"  # how labels of ticks begin, which are formulas
+
 _RC: Any = {
     "svg.hashsalt": "beamopt",
     "font.size": 9.0,
@@ -68,14 +70,29 @@ _RC: Any = {
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Let a function draw in the project's style, without changing the caller's settings."""
+    """Let a function draw in the project's style, without changing the caller's settings.
+
+    Names of files and scenes stand in the figure as they are: no text is a formula.
+    """
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with _our_settings():
-            return draw(*args, **kwargs)
+            figure = draw(*args, **kwargs)
+        _show_as_they_are(figure)
+        return figure
 
     return drawn
+
+
+def _show_as_they_are(figure: Figure) -> None:
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        said = text.get_text()
+        if said and not said.startswith(TICK):
+            text.set_parse_math(False)
+            text.set_text("".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in said))
 
 
 def _our_settings() -> AbstractContextManager[None]:

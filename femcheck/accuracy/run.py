@@ -12,7 +12,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import NoEquilibriumError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.provenance import provenance
 from femcheck.accuracy.ending import Ending, Within
@@ -26,7 +26,11 @@ from femcheck.models.reply import Model
 __all__ = ["beam_difference", "run_accuracy", "tips_csv"]
 
 JOURNAL = "journal.jsonl"
-NAMES = (JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json")
+KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema": "femcheck-accuracy/',))
+NAMES = (
+    *(JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
+    "provenance.json",
+)
 TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
 TRIED = "model,unknowns,size,found,of"
 DIGITS = 6  # of a millimetre
@@ -66,20 +70,20 @@ def run_accuracy(
     InputError : `out` holds something else, or can not be written; see also `answer_within`.
     """
     check_asked(question, accuracy, rung)
-    claim_folder(out, JOURNAL, resume=resume)
-    clear_leftovers(out, NAMES)
     asked = asked_of(question) | {"schema": "femcheck-accuracy/1", "accuracy": accuracy}
-    lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
-    found = answer_within(
-        question,
-        accuracy,
-        rung=rung,
-        most_seconds=most_seconds,
-        workers=workers,
-        progress=progress,
-        kept=_Journal(lines, measured_in(lines, question.law.limits.iterations)),
-    )
-    _write(found, out)
+    with claimed(out, KIND, resume=resume):
+        lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
+        clear_leftovers(out, NAMES)
+        found = answer_within(
+            question,
+            accuracy,
+            rung=rung,
+            most_seconds=most_seconds,
+            workers=workers,
+            progress=progress,
+            kept=_Journal(lines, measured_in(lines, question.law.limits.iterations)),
+        )
+        _write(found, out)
     return found
 
 

@@ -49,7 +49,8 @@ def run_command(request: RunRequest) -> None:
     folders = folders_of(request, [subject.name for subject in subjects])
     for subject, folder in zip(subjects, folders, strict=True):  # before any work
         say_findings(subject.design, subject.name if len(subjects) > 1 else "")
-        CheckFolder.open(folder, subject, options.question, resume=request.resume)
+        with CheckFolder.open(folder, subject, options.question, resume=request.resume):
+            pass
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
     console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
     codes = []

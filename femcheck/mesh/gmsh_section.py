@@ -9,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -19,6 +18,7 @@ import numpy as np
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.brief import Brief, changed_fields
 from beamopt.outline.outline import Outline
+from beamopt.scratch import scratch_folder
 from femcheck.mesh.geo import SectionSizes, geo_script
 from femcheck.mesh.section_mesh import SectionMesh
 
@@ -105,8 +105,8 @@ class Mesher:
         command = _find(self.command)
         if command is None:
             return MeshFailure(MeshProblem.NO_GMSH, self.command or "pip install gmsh")
-        with tempfile.TemporaryDirectory(prefix="femcheck-") as folder:
-            script, written = Path(folder) / "section.geo", Path(folder) / "section.msh"
+        with scratch_folder() as folder:
+            script, written = folder / "section.geo", folder / "section.msh"
             script.write_text(geo_script(outline, sizes), encoding="utf-8")
             arguments = [*command, "-2", "-v", "1", "-format", "msh41"]
             failure = _run([*arguments, "-o", str(written), str(script)], self.seconds)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from beamopt.design import Design
 from beamopt.errors import InputError
+from beamopt.files import replacing
 from beamopt.input_file import MOST_MESH, check_regular, read_bytes
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
@@ -90,14 +90,10 @@ def write_section(file: Path, section: SectionMesh, digest: str) -> None:
     marked = {"gmsh:physical": groups, "gmsh:geometrical": groups}
     flat = np.column_stack([section.points, np.zeros(len(section.points))])
     mesh = meshio.Mesh(flat, cells, cell_data=marked)
-    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    try:
+    with replacing(file) as temporary:
         meshio.gmsh.write(temporary, mesh, fmt_version="2.2", binary=False)
         with temporary.open("a", encoding="utf-8", newline="\n") as stream:
             stream.write(_comment(digest))
-        temporary.replace(file)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def mesh_digest(file: Path) -> str:
