@@ -31,7 +31,7 @@ __all__ = ["run_study"]
 Callback = Callable[[Outcome, int, int], None]
 
 
-KIND = FolderKind("a study", "study.json", ('{\n "schema": "beamopt-study/',))
+KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
 class StudyFile(Model):
@@ -73,6 +73,14 @@ def run_study(
     ------
     InputError : `out` holds something else, or can not be written.
     NotComputedError : the processes of some searches died; all others are done.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> small = ("search.generations=0",)
+    >>> plan = beamopt.Plan(1, overrides=small, targets=("random-section",), refine=False)
+    >>> len(beamopt.run_study("study", plan, figures=False))
+    4
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
@@ -94,13 +102,13 @@ def run_one(run: Run, folder: Path) -> Outcome:
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
-    last, times = result.history[-1], read_times(own / "timing.csv")
+    last, times = result.last, read_times(own / "timing.csv")
     return Outcome(
         run,
         last.best.verdict,
         last.best_ever.verdict.L,
         result.evaluations,
-        tuple(record.best.verdict.L for record in result.history),
+        tuple(record.best_loss for record in result.history),
         times.get("search", math.nan),
         None
         if result.refinement is None

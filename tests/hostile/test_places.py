@@ -94,7 +94,7 @@ NAMES = (
     "\udcff\udcfe",
     "é\u202e😀",
     "a\nb",
-    "[/]",
+    "[red]",
     "$\\frac$",
     "-x",
     "a b'c\"",
