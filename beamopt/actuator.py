@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
+from beamopt.free_values import FreeTable
 from beamopt.model import Model, Number, quantity
 from beamopt.rod.ladder import Loads, Piece, RodModel, Rung, SectionValues
 from beamopt.rod.law import poissons_ratio
@@ -56,7 +57,7 @@ class SegmentChoice(Model):
         0.0, "angle of its section about the axis", unit="degrees", low=-360, high=360
     )
     file: str | None = quantity(None, "design file whose section it has, relative to this one")
-    section: dict[str, Any] | None = quantity(None, "a whole design, instead of a file")
+    section: FreeTable | None = quantity(None, "a whole design, instead of a file")
 
     @model_validator(mode="after")
     def _has_one_section(self) -> SegmentChoice:

@@ -19,7 +19,7 @@ from beamopt.bound.wanted import Wanted
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.provenance import provenance
 from beamopt.scene import Scene
 from beamopt.target import Target

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from beamopt.errors import InputError
 from beamopt.model import Count, Model, Number, quantity
+from beamopt.outline.faults import Fault, FaultKind
+from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
+from beamopt.section.feature_points import FeaturePoints
+from beamopt.section.grid import PolarGrid
 
-__all__ = ["DrawnChamber", "Points"]
+__all__ = ["DrawnChamber", "Points", "check_drawing", "lost_in_raster"]
 
 Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 
@@ -20,6 +26,13 @@ class Points(Model):
     x: tuple[Position, ...]
     y: tuple[Position, ...]
     type: tuple[Annotated[int, Field(strict=True, ge=0, le=3)], ...]
+
+    def __repr__(self) -> str:
+        return f"<Points: {len(self.x)} feature points>"
+
+    def build(self) -> FeaturePoints:
+        """The feature points that sections are made of, and that a judge takes."""
+        return FeaturePoints(self.x, self.y, self.type)
 
     @model_validator(mode="after")
     def _same_length(self) -> Points:
@@ -54,3 +67,38 @@ class DrawnChamber(Model):
         if self.center and self.radius and given <= {"center", "radius"}:
             return Circle(self.supply, self.center, self.radius)
         raise ValueError("a chamber has either r and phi (and corner), or center and radius")
+
+
+def check_drawing(drawing: Sequence[DrawnChamber], grid: PolarGrid) -> None:
+    """Refuse chambers that are too thin, or lie outside the ring.
+
+    Raises
+    ------
+    InputError : the chamber by its number, and what is allowed.
+    """
+    from beamopt.outline.drawn import least_width, outside, too_thin
+
+    shapes = [chamber.build() for chamber in drawing]
+    width = f"at least {least_width(grid):g} mm wide"
+    for number in too_thin(shapes, grid):
+        raise InputError("", f"drawing[{number}]", None, f"is too thin: must be {width}")
+    for number in outside(shapes, grid):
+        within = f"within radii {grid.inner_radius:g} and {grid.outer_radius:g} mm"
+        sector = "" if grid.is_full_ring else f", {grid.start:g}…{grid.stop:g}°"
+        allowed = f"lies outside the section: must have an area {within}{sector}, {width}"
+        raise InputError("", f"drawing[{number}]", None, allowed)
+
+
+def lost_in_raster(
+    drawing: Sequence[DrawnChamber], section: CrossSection, faults: Sequence[Fault]
+) -> Iterator[Fault]:
+    """Drawn chambers too small for the elements that an unsealed section is made of.
+
+    faults : of the section's outline; a chamber that is hidden or lost there is left out.
+    """
+    nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
+    found = {fault.drawn for fault in faults if fault.status in nowhere}
+    labels, (x, y) = section.labels, section.grid.centroids
+    for number, shape in enumerate(chamber.build() for chamber in drawing):
+        if number not in found and not (labels[shape.covers(x, y)] == shape.supply).any():
+            yield Fault(FaultKind.LOST, supplies=(shape.supply,), drawn=number)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import Field, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules, rod_model
 from beamopt.arrays import FloatArray
-from beamopt.chambers import DrawnChamber, Points
+from beamopt.chambers import Points, lost_in_raster
 from beamopt.climb import Climb, climb
+from beamopt.design_keys import DesignKeys
 from beamopt.errors import InputError, NoEquilibriumError
 from beamopt.files import json_text, write_atomic
 from beamopt.grid_keys import Grid, Levels, WallElements
-from beamopt.model import Model, parse, quantity, read_json
+from beamopt.input_file import read_json
+from beamopt.model import parse
 from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
 from beamopt.outline.saint_venant import outline_saint_venant
@@ -45,48 +46,11 @@ __all__ = [
 SCHEMA = "beamopt-design/1"
 
 
-class Design(Model):
+class Design(DesignKeys):
     """A section, the actuator that it is extruded to, and its pressure levels.
 
     Exactly one of `feature_points` and `drawing` says what the section is.
     """
-
-    schema_: Literal["beamopt-design/1"] = Field(alias="schema")
-    grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
-    feature_points: Points | None = quantity(None, "x, y, type of every feature point")
-    drawing: tuple[DrawnChamber, ...] | None = quantity(None, "a list of drawn chambers")
-    wall_elements: WallElements = quantity(
-        ..., "elements of a wall between supplies, even; none if sealed", low=0, high=64
-    )
-    seal: Seal = quantity(..., "skin, wall, islands; also rounding, smallest_chamber")
-    actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
-    pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
-    rod: RodRules = RodRules()
-    loads: Loading = Loading()
-    notes: dict[str, Any] = Field(default={}, description="anything worth keeping; not read")
-
-    @model_validator(mode="after")
-    def _is_one_section(self) -> Design:
-        if (self.feature_points is None) == (self.drawing is None):
-            raise ValueError("exactly one of feature_points and drawing must be given")
-        self.seal.check_fits(self.grid.build())
-        self._check_drawing()
-        return self
-
-    def _check_drawing(self) -> None:
-        from beamopt.outline.drawn import least_width, outside, too_thin
-
-        if not self.drawing:
-            return
-        grid, shapes = self.grid.build(), [chamber.build() for chamber in self.drawing]
-        width = f"at least {least_width(grid):g} mm wide"
-        for number in too_thin(shapes, grid):
-            raise InputError("", f"drawing[{number}]", None, f"is too thin: must be {width}")
-        for number in outside(shapes, grid):
-            within = f"within radii {grid.inner_radius:g} and {grid.outer_radius:g} mm"
-            sector = "" if grid.is_full_ring else f", {self.grid.start:g}…{self.grid.stop:g}°"
-            allowed = f"lies outside the section: must have an area {within}{sector}, {width}"
-            raise InputError("", f"drawing[{number}]", None, allowed)
 
     @classmethod
     def of_points(
@@ -144,21 +108,12 @@ class Design(Model):
 
     def findings_on(self, outline: Outline) -> tuple[Fault, ...]:
         """The same on an outline of this design with other edges."""
-        found = [*outline.faults, *self._not_in_the_raster()]
+        found = list(outline.faults)
+        if self.drawing is not None and not self.seal.rules.sealed:
+            found += lost_in_raster(self.drawing, self.section, self.outline.faults)
         if self.seal.rules.sealed and self.wall_elements:
             found.append(Fault(FaultKind.WALL_ELEMENTS, float(self.wall_elements)))
         return worst_first(found)
-
-    def _not_in_the_raster(self) -> Iterator[Fault]:
-        """Drawn chambers too small for the elements that an unsealed section is made of."""
-        if self.drawing is None or self.seal.rules.sealed:
-            return
-        nowhere = (FaultKind.HIDDEN, FaultKind.LOST)
-        found = {fault.drawn for fault in self.outline.faults if fault.status in nowhere}
-        labels, (x, y) = self.section.labels, self.section.grid.centroids
-        for number, shape in enumerate(chamber.build() for chamber in self.drawing):
-            if number not in found and not (labels[shape.covers(x, y)] == shape.supply).any():
-                yield Fault(FaultKind.LOST, supplies=(shape.supply,), drawn=number)
 
     @cached_property
     def moments(self) -> Moments:
@@ -169,8 +124,21 @@ class Design(Model):
     def source(self) -> FeaturePoints | list[Shape]:
         """What its section is made of."""
         if self.feature_points is not None:
-            return FeaturePoints(**self.feature_points.model_dump())
+            return self.feature_points.build()
         return [chamber.build() for chamber in self.drawing or []]
+
+    @property
+    def points(self) -> FeaturePoints:
+        """The feature points, as a judge takes them: `judge([design.points])`.
+
+        Raises
+        ------
+        InputError : the design is drawn.
+        """
+        if self.feature_points is None:
+            said = "a design of feature points; drawn chambers have none to move"
+            raise InputError("", "drawing", None, said)
+        return self.feature_points.build()
 
     @cached_property
     def response(self) -> LinearResponse:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import Enum
 
-__all__ = ["InputError", "NoEquilibriumError"]
+__all__ = ["EndedBySignalError", "InputError", "NoEquilibriumError", "NotComputedError"]
 
 
 class InputError(ValueError):
@@ -34,7 +34,8 @@ class InputError(ValueError):
         if self.value is not None:
             said = f"{self.key} = {shown}" if self.key else shown
         parts = [part for part in (self.where, said, self.allowed) if part]
-        return " ".join(": ".join(parts).split())
+        text = " ".join(": ".join(parts).split())
+        return text.encode("utf-8", "backslashreplace").decode()  # names of files hold any bytes
 
 
 class NoEquilibriumError(ValueError):
@@ -50,3 +51,25 @@ class NoEquilibriumError(ValueError):
     def __str__(self) -> str:
         at = ", ".join(f"{one:g}" for one in self.pressures)
         return f"no tip at {at} kPa: {self.status.value}"
+
+
+class NotComputedError(RuntimeError):
+    """What was asked for could not be computed: a process or the machine gave out, not the input.
+
+    what : the task. why : in the words of people, with the way out where there is one.
+    """
+
+    def __init__(self, what: str, why: str) -> None:
+        self.what, self.why = what, why
+        super().__init__(what, why)
+
+    def __str__(self) -> str:
+        return f"{self.what}: {self.why}"
+
+
+class EndedBySignalError(KeyboardInterrupt):
+    """A signal asked the process to end, as Ctrl-C does, and soon; `number` is the signal's."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        super().__init__(number)

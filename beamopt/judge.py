@@ -57,6 +57,10 @@ class Verdict:
     status: Status = Status.JUDGED
     R: float = 0.0
 
+    def __repr__(self) -> str:
+        rules = f", R = {self.R:.4g} mm²" if self.R else ""
+        return f"<Verdict: L = {self.L:.4g} mm², K = {self.K:.4g}{rules}, {self.status.name}>"
+
     @property
     def T(self) -> float:
         """The total loss L + K + R, which selection looks at."""
@@ -91,6 +95,13 @@ class Judge:
     neighbour_weight: float
     rules: SealRules = UNSEALED
     making: MakingRules = FREE
+
+    def __repr__(self) -> str:
+        sealed = "sealed" if self.rules.sealed else "unsealed"
+        return (
+            f"<Judge: {len(self.aim)} tips, {len(self.aim.paths)} points of trajectories, "
+            f"rod {self.rod.rung.value}, {sealed} sections, λ = {self.neighbour_weight:g}>"
+        )
 
     @cached_property
     def _parents(self) -> IndexArray | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from beamopt.input_file import read_bytes
 from beamopt.scene import Scene
 from beamopt.target_choice import MOST_PATHS
 
@@ -26,6 +27,6 @@ def scene_to_keep(scene: Scene) -> tuple[Scene, dict[str, bytes]]:
     names = () if chosen.file is None else (SOURCES[chosen.kind],)
     paths = PATHS[: len(chosen.paths)]
     files = zip((*names, *paths), chosen.files, strict=True)
-    sources = {name: Path(file).read_bytes() for name, file in files}
+    sources = {name: read_bytes(Path(file)) for name, file in files}
     kept = chosen.model_copy(update={"file": names[0] if names else None, "paths": paths})
     return scene.model_copy(update={"target": kept}), sources

@@ -133,9 +133,10 @@ class LineJournal:
                 raise self.damaged(number) from None
         return found
 
-    def add(self, entry: dict[str, Any]) -> None:
-        """Keep a result."""
-        self.entries.append(entry)
+    def add(self, entry: dict[str, Any], *, keep: bool = True) -> None:
+        """Write a result; `keep` says whether `entries` holds it too."""
+        if keep:
+            self.entries.append(entry)
         text = json.dumps(entry)
         with self.path.open("a", encoding="utf-8") as stream:
             stream.write((with_digest(text) if self.digests else text) + "\n")

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import copy
-import json
-from collections.abc import Mapping
-from functools import partial
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
 
+from beamopt.brief import Brief
 from beamopt.errors import InputError
 
-__all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity", "read_json", "read_text"]
+__all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity"]
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number; text and booleans are refused."""
 
 Count = Annotated[int, Field(strict=True)]
 """A whole number; text, booleans and fractions are refused."""
+
+
+PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("_")} - {"model_copy"}
+"""Names of pydantic's that completion leaves out."""
 
 
 class Model(BaseModel):
@@ -51,6 +53,21 @@ class Model(BaseModel):
     def copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # type: ignore[override]
         """Copy as `model_copy` does; pydantic's own would take computed values along."""
         return self.model_copy(update=update, deep=deep)
+
+    def __dir__(self) -> Iterable[str]:
+        """Keys, own methods and properties, and `model_copy`: pydantic's other names are hidden."""
+        models = [model for model in type(self).__mro__[:-1] if issubclass(model, Model)]
+        own = {name for model in models if model is not Model for name in vars(model)}
+        hidden = PYDANTIC - {name for name in own if not name.startswith("model_")}
+        return sorted(set(super().__dir__()) - hidden)
+
+    def __repr_args__(self) -> Iterator[tuple[str, object]]:
+        """Keys that differ from their defaults, with short values."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            usual = field.get_default(call_default_factory=True, validated_data=self.__dict__)
+            if field.is_required() or value != usual:
+                yield name, Brief(value)
 
     def __getstate__(self) -> dict[Any, Any]:
         """Return the state to pickle, without cached values."""
@@ -201,52 +218,3 @@ def _keys(holder: type[BaseModel] | None) -> str:
 
 def _described(field: FieldInfo | None) -> str:
     return (field.description or "") if field is not None else ""
-
-
-def read_text(path: Path) -> str:
-    """The text of a file.
-
-    Raises
-    ------
-    InputError : it is missing, a folder, not readable, or not text.
-    """
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        reason = (error.strerror or "can not be read").lower()
-        raise InputError(path, "", None, reason) from None
-    except UnicodeDecodeError:
-        raise InputError(path, "", None, "no text file in UTF-8") from None
-    except ValueError as error:  # a path that can not be one
-        raise InputError(repr(str(path)), "", None, str(error)) from None
-
-
-def _without_doubles(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        keys = [key for key, _ in pairs]
-        double = next(key for key in keys if keys.count(key) > 1)
-        raise InputError(path, double, None, "stands there twice")
-    return data
-
-
-def read_json(path: Path) -> dict[str, Any]:
-    """The object in a JSON file.
-
-    Raises
-    ------
-    InputError : as `read_text`, or it is not one whole JSON object.
-    """
-    text = read_text(path)
-    try:
-        data = json.loads(text, object_pairs_hook=partial(_without_doubles, path))
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(path, place, error.msg, "a whole JSON file (is it cut off?)") from None
-    except InputError:
-        raise
-    except (ValueError, RecursionError) as error:  # numbers too long, brackets too deep
-        raise InputError(path, "", None, f"no JSON that can be read: {error}") from None
-    if not isinstance(data, dict):
-        raise InputError(path, "", type(data).__name__, "a JSON object {…}")
-    return data

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from typing import Any
 
 from beamopt.errors import InputError
+from beamopt.input_file import MOST_KEY_PARTS, parse_toml
 
 __all__ = ["overridden"]
 
@@ -18,10 +18,12 @@ def overridden(data: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]
         if not separator or not key.strip() or "\n" in override:
             raise InputError("--set", "", override, "written as section.key=value")
         try:
-            value = tomllib.loads(f"value = {text}")["value"]
-        except (ValueError, RecursionError):
+            value = parse_toml(f"value = {text}", "--set")["value"]
+        except InputError:
             value = text.strip()
         *sections, last = key.strip().split(".")
+        if len(sections) >= MOST_KEY_PARTS:
+            raise InputError("--set", "", override, f"a key of at most {MOST_KEY_PARTS} parts")
         table = data
         for name in sections:
             table = table.setdefault(name, {})

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from beamopt.design import Design
-from beamopt.errors import InputError
 from beamopt.refine.refine import Refined, RefineStatus, StageRecord, improved, refine
 from beamopt.scene import Scene
 from beamopt.search_settings import Refining
@@ -33,6 +32,13 @@ class Refinement:
     seconds: float
     compiling: float = 0.0
 
+    def __repr__(self) -> str:
+        before, after = self.refined.before.L, self.refined.after.L
+        return (
+            f"<Refinement: L from {before:.4g} to {after:.4g} mm², "
+            f"{self.refined.evaluations} sections judged, {self.refined.status.name}>"
+        )
+
     @property
     def times(self) -> dict[str, float]:
         """Seconds, by the names that `timing.csv` has them under."""
@@ -51,11 +57,7 @@ def refine_design(
     ------
     InputError : the design is drawn, or the scene's target can not be used.
     """
-    points = design.source
-    if not isinstance(points, FeaturePoints):
-        said = "a design of feature points; drawn chambers have none to move"
-        raise InputError("", "drawing", None, said)
-    return refine_points(points, scene, target or scene.load_target(), callback)
+    return refine_points(design.points, scene, target or scene.load_target(), callback)
 
 
 def refine_points(

@@ -11,6 +11,7 @@ from typing import Any
 from beamopt.design import load_design
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import FolderKind, clear_leftovers
+from beamopt.input_file import read_text
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
 from beamopt.refinement import Refinement
@@ -91,7 +92,7 @@ def becomes(folder: Path, best: str | None, found: Refinement | None) -> Earlier
     there, earlier = folder / "refined.json", folder / "best.json"
     if not there.exists():
         return EarlierRefinement.NONE
-    if not earlier.exists() or earlier.read_text(encoding="utf-8") != best:
+    if not earlier.exists() or read_text(earlier) != best:
         return EarlierRefinement.SET_ASIDE
     if found is None:
         return EarlierRefinement.STAYS

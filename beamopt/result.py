@@ -6,13 +6,16 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamopt.answers import Answers
 from beamopt.bound.certificate import Certificate, quick_certificate
+from beamopt.brief import Brief
 from beamopt.design import Design
 from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.history import History
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Judge, Verdict
 from beamopt.reach.reach import Reach
@@ -23,6 +26,9 @@ from beamopt.scene import Scene
 from beamopt.target import Target
 from beamopt.timing import Timing
 from beamopt.workspace import pressure_grid
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["EarlierRefinement", "Optimisation"]
 
@@ -45,7 +51,8 @@ class Optimisation:
     scene, target : what was searched for.
     best : the design with the lowest L + R of all that were judged.
     final : the design with the lowest L + R in the last population, the paper's result.
-    history : one record a generation, the initial population first.
+    last : the last generation.
+    history : the numbers of every generation, the initial population first.
     timing : of the sections that were judged now.
     refinement : of the best design, where the scene asks for it and there was one.
     there : what became of a refinement that the run folder held already.
@@ -56,10 +63,18 @@ class Optimisation:
     target: Target
     best: Design
     final: Design
-    history: tuple[Generation, ...]
+    last: Generation
+    history: History
     timing: Timing
     refinement: Refinement | None = None
     there: EarlierRefinement = EarlierRefinement.NONE
+
+    def __repr__(self) -> str:
+        return (
+            f"<Optimisation {Brief(self.scene.name)}: L = {self.verdict.L:.4g} mm², "
+            f"{self.rms_distance:.3g} mm a tip, {self.evaluations} sections judged, "
+            f"{self.status.name}>"
+        )
 
     @property
     def seconds(self) -> float:
@@ -69,7 +84,7 @@ class Optimisation:
     @property
     def verdict(self) -> Verdict:
         """Losses L, K, T of the best design."""
-        return self.history[-1].best_ever.verdict
+        return self.last.best_ever.verdict
 
     @property
     def rms_distance(self) -> float:
@@ -94,6 +109,13 @@ class Optimisation:
     def reach(self) -> Reach | None:
         """How the best design follows the target's trajectories; None where it has none."""
         return self._judge.question.reach(self.best.values) if self.target.paths else None
+
+    def to_frame(self) -> DataFrame:
+        """Tips of the best design and of the target, a row each, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from beamopt.result_tables import tips_table_csv
+
+        return frame_of(tips_table_csv(self.target.aim, self.answers))
 
     @cached_property
     def _judge(self) -> Judge:
@@ -121,4 +143,4 @@ class Optimisation:
     @property
     def evaluations(self) -> int:
         """Sections judged."""
-        return self.history[-1].evaluations
+        return self.last.evaluations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from beamopt.actuator import Actuator, Loading, RodRules, rod_model
+from beamopt.brief import Brief
 from beamopt.bundled import bundled_scenes
 from beamopt.climb import Climb, climb
 from beamopt.design import (
@@ -23,9 +23,10 @@ from beamopt.design import (
     section_values,
 )
 from beamopt.errors import InputError, NoEquilibriumError
+from beamopt.input_file import parse_toml, read_text
 from beamopt.judge import Judge
 from beamopt.making import Making
-from beamopt.model import Count, Model, Number, parse, quantity, read_text
+from beamopt.model import Count, Model, Number, parse, quantity
 from beamopt.overrides import overridden
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.seal import Seal
@@ -38,7 +39,7 @@ from beamopt.target import Target, oddities, read_target
 from beamopt.target_choice import TargetChoice
 from beamopt.workspace import Workspace
 
-__all__ = ["Scene", "load_scene"]
+__all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
@@ -107,6 +108,17 @@ class Scene(Model):
         self.seal.check_fits(self.grid.build())
         self.making.check_fits(self.grid.build())
         return self
+
+    def __repr__(self) -> str:
+        search, ring = self.search, self.grid
+        return (
+            f"<Scene {Brief(self.name)}: target {self.target.kind}, "
+            f"r {ring.inner_radius:g}…{ring.outer_radius:g} mm, "
+            f"{search.population} individuals, {search.generations} generations, "
+            f"seed {search.seed}>"
+        )
+
+    __str__ = __repr__
 
     def load_target(self) -> Target:
         """What the tip should reach.
@@ -240,10 +252,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
         names = ", ".join(bundled_scenes())
         raise InputError(scene, "", None, f"no such scene; a path, or one of: {names}")
     text = read_text(path)
-    try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(path, "", None, f"no TOML file: {error}") from None
+    data = parse_toml(text, path)
     if data.get("schema", SCHEMA) != SCHEMA:
         raise InputError(path, "schema", data["schema"], f"this version reads {SCHEMA}")
     if overrides:
@@ -253,7 +262,7 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     except InputError as error:
         if not overrides:
             raise
-        parse(Scene, tomllib.loads(text), path)  # what is wrong with the file itself comes first
+        parse(Scene, parse_toml(text, path), path)  # what is wrong with the file itself comes first
         raise InputError("--set", error.key, error.value, error.allowed) from None
     read = read.model_copy(update={"rod": with_sections(read.rod, path.parent)})
     return read.model_copy(update={"target": read.target.beside(path.parent.resolve())})

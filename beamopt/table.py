@@ -11,7 +11,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from beamopt.model import read_text
+from beamopt.input_file import read_text
 
 __all__ = ["Table", "read_table"]
 

@@ -10,14 +10,12 @@ import numpy as np
 from beamopt.aim import Aim, aim_of_workspace
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from beamopt.files import csv_text
 from beamopt.section.cross_section import CrossSection
 from beamopt.table import Table, read_table
-from beamopt.workspace import NODES, Workspace, node_index, pressure_grid
+from beamopt.workspace import COLUMNS, NODES, Workspace, node_index, pressure_grid
 
-__all__ = ["COLUMNS", "BaseFrame", "Target", "check_scale", "oddities", "read_target", "tips_csv"]
+__all__ = ["BaseFrame", "Target", "check_scale", "oddities", "read_target"]
 
-COLUMNS = {"p1": "kPa", "p2": "kPa", "p3": "kPa", "x": "mm", "y": "mm", "z": "mm"}
 ONLY_OF_POINTS = ("weight", "tx", "ty", "tz", "direction_weight")
 SAME_PRESSURE = 1e-6  # kPa
 
@@ -36,6 +34,11 @@ class Target:
     section: CrossSection | None = None
     warnings: tuple[str, ...] = ()
     paths: tuple[FloatArray, ...] = ()
+
+    def __repr__(self) -> str:
+        if self.workspace is not None:
+            return f"<Target: {self.workspace!r}, {len(self.paths)} trajectories>"
+        return f"<Target: {len(self.aim)} tips, {len(self.paths)} trajectories>"
 
     @classmethod
     def of_workspace(
@@ -203,8 +206,3 @@ def _found_levels(table: Table) -> str:
 
 def _listed(levels: tuple[float, float, float]) -> str:
     return ", ".join(f"{level:g}" for level in levels)
-
-
-def tips_csv(pressures: FloatArray, tips: FloatArray) -> str:
-    """The table `p1,p2,p3,x,y,z` [kPa, mm] that targets are read from."""
-    return csv_text(",".join(COLUMNS), np.hstack([pressures, tips]).tolist())

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beamopt.files import csv_text, write_atomic
+from beamopt.input_file import read_text
 
 __all__ = ["Timing", "read_times", "write_times"]
 
@@ -37,9 +38,9 @@ class Timing:
 def read_times(file: Path) -> dict[str, float]:
     """The seconds in a `timing.csv`, by what took them; none where there is no such table."""
     try:
-        with file.open(encoding="utf-8", newline="") as stream:
-            return {row["what"]: float(row["value"]) for row in csv.DictReader(stream)}
-    except (OSError, ValueError, KeyError, TypeError, csv.Error):
+        rows = csv.DictReader(read_text(file).splitlines())
+        return {row["what"]: float(row["value"]) for row in rows}
+    except (ValueError, KeyError, TypeError, csv.Error):
         return {}
 
 

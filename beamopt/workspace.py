@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
+from beamopt.files import csv_text
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = [
+    "COLUMNS",
     "HEXAHEDRON_EDGES",
     "HEXAHEDRON_NODES",
     "NODES",
@@ -19,8 +25,12 @@ __all__ = [
     "node_index",
     "pressure_grid",
     "rms_distance",
+    "tips_csv",
 ]
 
+
+COLUMNS = {"p1": "kPa", "p2": "kPa", "p3": "kPa", "x": "mm", "y": "mm", "z": "mm"}
+"""Columns of a table of tips, and their units."""
 
 NODES = 27
 """Pressure combinations of a workspace: three levels of three supplies."""
@@ -94,6 +104,14 @@ class Workspace:
     levels: tuple[float, float, float]
     tips: FloatArray
 
+    def __repr__(self) -> str:
+        low, middle, high = self.levels
+        farthest = float(np.linalg.norm(self.tips[:, :2], axis=1).max())
+        return (
+            f"<Workspace: {NODES} tips at {low:g}, {middle:g}, {high:g} kPa, "
+            f"up to {farthest:.4g} mm off the axis>"
+        )
+
     def __post_init__(self) -> None:
         if self.tips.shape != (NODES, 3):
             raise ValueError(f"tips have shape {self.tips.shape}: expected (27, 3)")
@@ -105,6 +123,12 @@ class Workspace:
     def pressures(self) -> FloatArray:
         """(27, 3) [kPa], matching `tips`."""
         return pressure_grid(self.levels)
+
+    def to_frame(self) -> DataFrame:
+        """Columns p1, p2, p3 [kPa], x, y, z [mm], as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+
+        return frame_of(tips_csv(self.pressures, self.tips))
 
     @property
     def hexahedron(self) -> FloatArray:
@@ -125,6 +149,11 @@ class Workspace:
         """(12, points, 3) the hexahedron's edges as polylines [mm]."""
         weights = _lagrange(np.array([0.0, 0.5, 1.0]), np.linspace(0, 1, points))
         return np.asarray(np.einsum("pa,eax->epx", weights, self.tips[HEXAHEDRON_EDGES]))
+
+
+def tips_csv(pressures: FloatArray, tips: FloatArray) -> str:
+    """The table `p1,p2,p3,x,y,z` [kPa, mm] that targets are read from."""
+    return csv_text(",".join(COLUMNS), np.hstack([pressures, tips]).tolist())
 
 
 def _lagrange(nodes: FloatArray, at: FloatArray) -> FloatArray:

@@ -36,6 +36,7 @@ OF_PEOPLE = {
     "beamopt/cli/endings.py": "text",  # put on one line, whatever it says
     "beamopt/cli/tips.py": "text",
     "beamopt/files.py": "text",  # a cell of a table, defused
+    "beamopt/input_file.py": "text",  # a file
     "beamopt/overrides.py": "text",
     "beamopt/pareto/scores.py": "text",
     "beamopt/scene_text.py": "text",

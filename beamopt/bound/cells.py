@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.bound.work import ROUND
 from beamopt.rod.arc import arc_tip_jacobian, arc_tips
 
 __all__ = ["Box", "RayMinimum", "RaySum", "ray_minimum"]
 
 LINEAR_BELOW = 0.5  # rad and stretch: half sides of cells in which a tip's slope says something
 MOST_CELLS = 400_000  # kept at once
+AT_ONCE = 2**22  # tips computed at once; more take gigabytes
 TURN = 2 * np.pi
 
 
@@ -80,6 +83,19 @@ class RaySum:
 
         The second bound of `ray_minimum` is computed where the first is below `enough`.
         """
+        count = max(1, AT_ONCE // len(self.shares))
+        parts = [
+            self._cells(centres[k : k + count], halves[k : k + count], price, enough)
+            for k in range(0, len(centres), count)
+        ]
+        if len(parts) == 1:
+            return parts[0]
+        return np.concatenate([a for a, _ in parts]), np.concatenate([b for _, b in parts])
+
+    def _cells(
+        self, centres: FloatArray, halves: FloatArray, price: FloatArray, enough: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """See `cells`, of so few that they fit in memory."""
         distance = np.linalg.norm(arc_tips(self._of_rows(centres), 1.0) - self.tips, axis=-1)
         move, bend = self.reach(centres, halves)
         priced = centres @ price
@@ -107,13 +123,16 @@ class RaySum:
 class RayMinimum:
     """A least priced sum lies between `lower` and `upper` [H²], which `strain` (3,) attains.
 
-    cells : boxes of strains that were looked at.
+    cells : boxes of strains that were looked at. work : what they took, see `Work`.
+    cut : whether the two ends are farther apart than asked for, as no more work was allowed.
     """
 
     lower: float
     upper: float
     strain: FloatArray
     cells: int
+    work: float
+    cut: bool
 
 
 def ray_minimum(
@@ -123,6 +142,7 @@ def ray_minimum(
     guess: FloatArray,
     slack: float,
     share: float = 0.0,
+    most: float = math.inf,
 ) -> RayMinimum:
     """The least ray(s) + λ · s over a box of strains s, between two ends [H²].
 
@@ -154,14 +174,16 @@ def ray_minimum(
     ----------
     price : (3,) λ. guess : (3,) a strain (ε, κ1 H, κ2 H) in the box.
     slack, share : how far apart the two ends may be [H²], or by which share of the upper one.
+    most : work that it may take, but for a first round.
     """
     low, high = box.stretch
     centres = np.array([[(low + high) / 2, 0.0, 0.0]])
     halves = np.array([[(high - low) / 2, box.turn, box.turn]])
     upper = float(ray.at(guess[None])[0] + price @ guess)
-    lower, cells, strain = upper, 0, guess
+    lower, cells, strain, work, cut = upper, 0, guess, 0.0, False
     while len(centres):
         cells += len(centres)
+        work += len(centres) * len(ray.shares) + ROUND
         enough = upper - max(slack, share * upper)
         sums, bounds = ray.cells(centres, halves, price, enough)
         inside = np.hypot(centres[:, 1], centres[:, 2]) <= box.turn
@@ -172,11 +194,13 @@ def ray_minimum(
         met = np.hypot(nearest[:, 0], nearest[:, 1]) <= box.turn  # else wholly beyond the turn
         left = met & (bounds < upper - max(slack, share * upper))
         lower = min(lower, float(bounds[met & ~left].min(initial=np.inf)))
-        if left.sum() > MOST_CELLS:
+        count = int(left.sum())
+        cut = count > 0 and work + 2 * count * len(ray.shares) > most
+        if cut or count > MOST_CELLS:
             lower = min(lower, float(bounds[left].min()))
             break
         centres, halves = _halved(centres[left], halves[left])
-    return RayMinimum(min(lower, upper), upper, strain, cells)
+    return RayMinimum(min(lower, upper), upper, strain, cells, work, cut)
 
 
 def _halved(centres: FloatArray, halves: FloatArray) -> tuple[FloatArray, FloatArray]:

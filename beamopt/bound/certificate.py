@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -13,20 +12,19 @@ from beamopt.bound.response import ResponseBound, response_bound
 from beamopt.bound.ring import RingMoments
 from beamopt.bound.ring_bound import RingBound, ring_bound
 from beamopt.bound.wanted import Wanted, wanted_of
+from beamopt.bound.work import MOST_WORK, Progress, Work
 from beamopt.rod.ladder import Rung
 from beamopt.scene import Scene
 from beamopt.target import Target
 
 __all__ = ["BoundStatus", "Certificate", "Progress", "certificate", "quick_certificate"]
 
-Progress = Callable[[str, str], None]
-"""Gets the part of the work that goes on, and how far it is."""
-
 
 class BoundStatus(Enum):
     """Whether there is a bound; the value is the text shown to people."""
 
     BOUNDED = "bounded"
+    WORK_LIMIT = "bounded by what the work allowed has proven; more work may prove more"
     NOT_AN_ARC = "no bound: the tips of this scene's rod do not depend on a response matrix alone"
     NO_ROWS = "no bound: the target names no tips at given pressures"
 
@@ -52,6 +50,14 @@ class Certificate:
     ring: RingBound | None = None
     seconds: dict[str, float] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        found = None if self.response is None else self.response.loss
+        proven = None if self.proven is None else self.proven.loss
+        ring = None if self.ring is None else self.ring.inner
+        losses = {"found": found, "proven": proven, "in the ring": ring}
+        said = ", ".join(f"{name} {L:.4g} mm²" for name, L in losses.items() if L is not None)
+        return f"<Certificate: {said or self.status.name}>"
+
 
 def quick_certificate(scene: Scene, target: Target) -> Certificate:
     """The response bound alone: some hundredths of a second."""
@@ -66,19 +72,27 @@ def quick_certificate(scene: Scene, target: Target) -> Certificate:
     return Certificate(BoundStatus.BOUNDED, wanted, response, seconds=seconds)
 
 
-def certificate(scene: Scene, target: Target, callback: Progress | None = None) -> Certificate:
-    """All three bounds: seconds."""
+def certificate(
+    scene: Scene,
+    target: Target,
+    callback: Progress | None = None,
+    most_work: float = MOST_WORK,
+) -> Certificate:
+    """All three bounds: seconds for 27 rows, a minute or two for thousands.
+
+    Parameters
+    ----------
+    callback : called with the part that goes on and the share of the work that is spent.
+    most_work : tips of arcs to compute at most, half of them for the proof. Where that is not
+        enough the bounds are what is known by then: valid, but lower than they could be.
+    """
     quick = quick_certificate(scene, target)
     wanted, response = quick.wanted, quick.response
     if wanted is None or response is None:
         return quick
-    say = callback or _silent
     started = time.perf_counter()
-    proven = ray_bound(
-        wanted,
-        response=response.matrix,
-        callback=lambda k, of: say("proven", f"ray {k + 1} of {of}"),
-    )
+    proof, rounds = Work(most_work / 2, callback), Work(most_work / 2, callback)
+    proven = ray_bound(wanted, response=response.matrix, work=proof)
     between = time.perf_counter()
     moments = RingMoments.of(scene.grid.build(), scene.seal.rules.skin)
     ring = ring_bound(
@@ -86,15 +100,13 @@ def certificate(scene: Scene, target: Target, callback: Progress | None = None) 
         moments,
         scene.actuator.youngs_modulus,
         response.loss,
-        lambda k, low, high: say("ring", f"round {k}: {low:.4g} … {high:.4g} mm²"),
+        rounds,
     )
     seconds = {
         **quick.seconds,
         "proven": between - started,
         "ring": time.perf_counter() - between,
     }
-    return Certificate(quick.status, wanted, response, proven, ring, seconds)
-
-
-def _silent(part: str, said: str) -> None:
-    """Say nothing."""
+    short = proof.short or rounds.short
+    status = BoundStatus.WORK_LIMIT if short else BoundStatus.BOUNDED
+    return Certificate(status, wanted, response, proven, ring, seconds)

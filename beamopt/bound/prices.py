@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.bound.cells import Box, RayMinimum
-from beamopt.bound.rays import Progress, RayBound, RayParts
+from beamopt.bound.rays import RayBound, RayParts
 from beamopt.bound.wanted import Wanted
+from beamopt.bound.work import Work
 
 __all__ = ["FREE_GAP", "GAP", "ray_bound"]
 
@@ -17,13 +21,14 @@ ROUGH_GAP = 0.01  # the same while prices are sought
 NEAR_ENOUGH = 1e-7  # of H² Σ w: a difference that is good enough for small losses
 CLOSE = 0.02  # share of the known loss at which no better prices are sought
 MOST_ROUNDS = 12
+PROGRAMME = 20  # work of a linear programme, by the square of the number of rays
 
 
 def ray_bound(
     wanted: Wanted,
     box: Box | None = None,
     response: FloatArray | None = None,
-    callback: Progress | None = None,
+    work: Work | None = None,
 ) -> RayBound:
     """Bound L(B) from below over all response matrices B whose strains stay in a box.
 
@@ -44,21 +49,22 @@ def ray_bound(
     ----------
     box : of each ray's strain at its highest pressure.
     response : (3, 3) the lowest B known, that the box is widened to hold; None: no prices.
-    callback : called before each ray of each round.
+    work : what it may take; when that is spent, the bound is what is proven by then.
     """
+    work = work or Work(math.inf)
     parts = RayParts.of(wanted, np.zeros((3, 3)) if response is None else response, box or Box())
     enough = NEAR_ENOUGH * wanted.length**2 * float(wanted.weights.sum())
-    free_least = parts.least(np.zeros_like(parts.highest), enough, FREE_GAP, callback)
+    free_least = parts.least(np.zeros_like(parts.highest), enough, FREE_GAP, work)
     free = parts.bound(free_least, priced=False)
     if response is None or not parts.sums:
         return free
     prices = _allowed(_slopes(parts), parts.highest)
     slack = max(enough, GAP * parts.known)
-    least = parts.least(prices, slack, callback=callback)
+    least = parts.least(prices, slack, work=work)
     priced = parts.bound(least, priced=True)
     if priced.loss < (1 - CLOSE) * parts.known - enough:
         met = [[free_least[k], one] for k, one in enumerate(least)]
-        priced = _sought(parts, prices, priced, met, callback)
+        priced = _sought(parts, prices, priced, met, work)
     return max(priced, free, key=lambda one: one.loss)
 
 
@@ -79,7 +85,7 @@ def _sought(
     prices: FloatArray,
     first: RayBound,
     met: list[list[RayMinimum]],
-    callback: Progress | None,
+    work: Work,
 ) -> RayBound:
     """The highest bound of a few rounds of better prices.
 
@@ -90,10 +96,15 @@ def _sought(
     reach = float(np.abs(prices).max()) / 10
     slack = ROUGH_GAP * parts.known
     for _ in range(MOST_ROUNDS):
+        programme = PROGRAMME * len(met) ** 2
+        if work.short or programme > work.of_a_pass:
+            work.short = True
+            break
+        work.spend("proven", programme)
         trial, hoped = _raised(parts, prices, reach, met)
         if hoped * parts.length**2 + parts.unmoved < value + slack:
             break
-        least = parts.least(trial, slack, callback=callback)
+        least = parts.least(trial, slack, work=work)
         for known, one in zip(met, least, strict=True):
             known.append(one)
         found = parts.bound(least, priced=True)
@@ -122,16 +133,17 @@ def _raised(
     (r, 3) prices with Σ λ_r q_rᵀ = 0, and the planes' value there [H²].
     """
     from scipy.optimize import linprog
+    from scipy.sparse import csr_array
 
     count = len(met)
-    rows, limits = [], []
+    values, columns, limits = [], [], []
     for k, known in enumerate(met):
         strains = np.array([parts.strains[k], *(one.strain for one in known)])
-        for strain, height in zip(strains, parts.sums[k].at(strains), strict=True):
-            row = np.zeros(4 * count)
-            row[3 * k : 3 * k + 3], row[3 * count + k] = -strain, 1.0
-            rows.append(row)
-            limits.append(height)
+        values += [[*(-strain).tolist(), 1.0] for strain in strains]
+        columns += [[3 * k, 3 * k + 1, 3 * k + 2, 3 * count + k]] * len(strains)
+        limits += parts.sums[k].at(strains).tolist()
+    places = np.repeat(np.arange(len(limits)), 4), np.ravel(columns)
+    rows: Any = csr_array((np.ravel(values), places), shape=(len(limits), 4 * count))
     coupled = np.zeros((9, 4 * count))
     scaled = parts.highest / np.abs(parts.highest).max()
     for i in range(3):
@@ -139,7 +151,7 @@ def _raised(
     ranges = [(price - reach, price + reach) for price in around.ravel().tolist()]
     found = linprog(
         np.repeat([0.0, -1.0], [3 * count, count]),
-        A_ub=np.array(rows),
+        A_ub=rows,
         b_ub=np.array(limits),
         A_eq=coupled,
         b_eq=np.zeros(9),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,14 +10,11 @@ import numpy as np
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.bound.cells import Box, RayMinimum, RaySum, ray_minimum
 from beamopt.bound.wanted import Wanted
+from beamopt.bound.work import Work
 
-__all__ = ["Progress", "Ray", "RayBound", "RayParts", "rays_of"]
+__all__ = ["Ray", "RayBound", "RayParts", "rays_of"]
 
 SAME_DIRECTION = 1e-9
-
-
-Progress = Callable[[int, int], None]
-"""Gets the rays done and how many there are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,19 +118,24 @@ class RayParts:
         prices: FloatArray,
         slack: float,
         share: float = 0.0,
-        callback: Progress | None = None,
+        work: Work | None = None,
     ) -> list[RayMinimum]:
         """The least priced sum of every ray, for prices (r, 3).
 
         slack : how far apart the two ends may be, over all rays [mm²]. share : or each ray's, of
-        its upper one. callback : called before each ray.
+        its upper one. work : a part of it may be spent; what one ray leaves is the next one's.
         """
-        found = []
+        found: list[RayMinimum] = []
+        allowed = math.inf if work is None else work.of_a_pass
         each = slack / self.length**2 / max(1, len(self.sums))
         for k, ray in enumerate(self.sums):
-            if callback is not None:
-                callback(k, len(self.sums))
-            found.append(ray_minimum(ray, self.box, prices[k], self.strains[k], each, share))
+            most = allowed / (len(self.sums) - k)
+            one = ray_minimum(ray, self.box, prices[k], self.strains[k], each, share, most)
+            found.append(one)
+            allowed = max(0.0, allowed - one.work)
+            if work is not None:
+                work.spend("proven", one.work)
+                work.short |= one.cut
         return found
 
     def bound(self, least: list[RayMinimum], *, priced: bool) -> RayBound:

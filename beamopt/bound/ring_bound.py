@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from beamopt.arrays import FloatArray
 from beamopt.bound.polytope import Cuts, least_squares_within, nearest_point
 from beamopt.bound.ring import NUMBERS, RingMoments, ring_response
 from beamopt.bound.wanted import Wanted
+from beamopt.bound.work import ROUND, Work
 from beamopt.rod.arc import arc_tip_jacobian_by_response
 
 __all__ = ["RingBound", "ring_bound"]
@@ -18,6 +19,7 @@ __all__ = ["RingBound", "ring_bound"]
 SEED = 0x21B
 DIRECTIONS, MIXTURES = 40, 4  # random ones: of the first cuts, and starts within the ring
 MOST_ROUNDS = 60
+RESIDUALS = 4  # work of residuals with their derivatives, by that of their tips
 KEPT = 30  # cuts of a round
 AGREE = 1e-3  # share of the outer value by which the inner one may be above it
 STUCK = 1e-10  # a cut so shallow changes nothing
@@ -56,7 +58,7 @@ def ring_bound(
     ring: RingMoments,
     youngs_modulus: float,
     least: float,
-    callback: Callable[[int, float, float], None] | None = None,
+    work: Work | None = None,
 ) -> RingBound:
     """Minimise L(B(m)) over the moments m ∈ M that chambers in the ring can have.
 
@@ -69,24 +71,28 @@ def ring_bound(
     Parameters
     ----------
     least : the lowest L over all responses [mm²]. Where chambers reach it, there is nothing to do.
-    callback : called with the round and its outer and inner value [mm²].
+    work : what it may take but for a first round; any round's outer value is a bound.
     """
-    search = _Search(wanted, ring, youngs_modulus)
+    work = work or Work(math.inf)
+    search = _Search(wanted, ring, youngs_modulus, work)
     enough = NEAR_ENOUGH * wanted.length**2 * float(wanted.weights.sum())
     cuts, starts = search.beginning()
     best, inner, outside, corners = starts[0], np.inf, None, np.array(starts)
-    for rounds in range(1, MOST_ROUNDS + 1):
+    rounds = 0
+    while rounds < MOST_ROUNDS:
+        rounds += 1
         tried = [best, *starts] if outside is None else [best, outside]
         outside, outer = search.lowest(cuts, tried)
         near = nearest_point(search.support, outside, np.vstack([best, corners]))
         value = search.value(near.point)
         if value < inner:
             best, inner = near.point, value
-        if callback is not None:
-            callback(rounds, outer, inner)
         if inner - outer <= max(AGREE * outer, enough):
             break
         if near.cuts.excess(outside) <= STUCK:
+            break
+        work.short |= not work.left
+        if work.short:
             break
         cuts = cuts.with_more(near.cuts.deepest(outside, KEPT))
         corners = near.corners
@@ -110,6 +116,7 @@ class _Search:
     wanted: Wanted
     ring: RingMoments
     youngs_modulus: float
+    work: Work
 
     def support(self, direction: FloatArray) -> tuple[float, FloatArray]:
         """h(d) and its point, see `RingMoments.farthest`."""
@@ -145,6 +152,7 @@ class _Search:
         if not is_stiff(self.ring, point * self.ring.reach):
             return None
         wanted = self.wanted
+        self.work.spend("ring", RESIDUALS * (len(wanted.tips) + ROUND))
         matrix, slopes = self.response(point)
         root = np.sqrt(wanted.weights)[:, None]
         away = root * (wanted.tips_of(matrix) - wanted.tips)

@@ -11,6 +11,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
@@ -73,7 +74,7 @@ def optimize_command(
         console.print(f"go on with: beamopt optimize {asked} --out {folder} --resume", markup=False)
         raise KeyboardInterrupt
     if result.verdict.status is not Status.JUDGED:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
 def _report(result: Optimisation, folder: Path) -> None:
@@ -102,7 +103,7 @@ def _report(result: Optimisation, folder: Path) -> None:
 
 def _found(result: Optimisation) -> list[tuple[str, str]]:
     verdict, pieces = result.verdict, result.best.section.pieces
-    final = result.history[-1].best.verdict.L
+    final = result.last.best.verdict.L
     chambers = " + ".join(str(count) for count in pieces.chambers)
     return [
         ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
@@ -135,7 +136,7 @@ def _total(result: Optimisation) -> list[tuple[str, str]]:
 
 def _rejected(result: Optimisation) -> list[tuple[str, str]]:
     """How many candidates were not judged, by reason; nothing where all were."""
-    counts = result.history[-1].rejected
+    counts = result.last.rejected
     said = "; ".join(f"{counts[one]}: {one.value}" for one in Status if one in counts)
     return [("not judged", said)] if said else []
 

@@ -38,6 +38,9 @@ class Individual:
     points: FeaturePoints
     verdict: Verdict
 
+    def __repr__(self) -> str:
+        return f"<Individual: {len(self.points)} feature points, {self.verdict}>"
+
 
 @dataclass(frozen=True, slots=True)
 class Generation:
@@ -57,6 +60,13 @@ class Generation:
     best: Individual
     best_ever: Individual
     rejected: Mapping[Status, int] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        L, ever = self.best.verdict.L, self.best_ever.verdict.L
+        return (
+            f"<Generation {self.index}: L = {L:.4g} mm², lowest so far {ever:.4g} mm², "
+            f"{self.evaluations} sections judged>"
+        )
 
 
 class GeneticAlgorithm:
@@ -88,6 +98,12 @@ class GeneticAlgorithm:
         self.stage = Stage.INITIAL
         self.generation = 0
         self.evaluations = 0
+
+    def __repr__(self) -> str:
+        return (
+            f"<GeneticAlgorithm: generation {self.generation}, {self.stage.value}, "
+            f"{self.evaluations} sections judged>"
+        )
 
     @property
     def pairs(self) -> int:

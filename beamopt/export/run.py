@@ -18,7 +18,7 @@ from beamopt.export.stl import stl_bytes
 from beamopt.export.svg import svg_text
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.model import read_json
+from beamopt.input_file import read_json
 from beamopt.outline.build import build_outline
 from beamopt.outline.ring import usual_sagitta
 from beamopt.provenance import provenance

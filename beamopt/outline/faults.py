@@ -95,6 +95,9 @@ class Fault:
             asked=None if self.asked is None else by * self.asked,
         )
 
+    def __repr__(self) -> str:
+        return f"<Fault {self.status.name}: {self}>"
+
     def __str__(self) -> str:
         where = ""
         if self.place:

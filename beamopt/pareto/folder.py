@@ -44,11 +44,11 @@ def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = Tru
 
     What is there already stays as it is, the times too where nothing else changes.
     """
-    designs = {k: _design(front, k) for k in front.worth_keeping()}
-    names = {k: f"front-{k:03d}.json" for k in designs}
+    designs = _designs(front)
+    names = {k: _name(k) for k in designs}
     _delete_designs(folder, names.values())
     # the table before the designs: a kill leaves none that it does not name
-    texts = {"front.csv": front_csv(front, judge, designs, names)}
+    texts = {"front.csv": front_csv(front, judge)}
     texts |= {names[k]: design.json() for k, design in designs.items()}
     texts["history.csv"] = _history_csv(front)
     texts["summary.json"] = json_text(_summary(front))
@@ -72,18 +72,27 @@ def _delete_designs(folder: Path, wanted: Collection[str]) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def front_csv(front: Front, judge: Judge, designs: dict[int, Design], names: dict[int, str]) -> str:
+def _designs(front: Front) -> dict[int, Design]:
+    """Designs that get a file, by their places on the front."""
+    return {k: _design(front, k) for k in front.worth_keeping()}
+
+
+def _name(k: int) -> str:
+    return f"front-{k:03d}.json"
+
+
+def front_csv(front: Front, judge: Judge) -> str:
     """A row a design, by L: losses [mm²], ratio, mass [g], chambers per supply, its file if any.
 
     Of sealed designs that are kept also the L of the outline, which is what they are.
     """
-    sealed = front.scene.seal.rules.sealed
+    sealed, designs = front.scene.seal.rules.sealed, _designs(front)
     header = "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"
     rows = []
     for k, one in enumerate(front.designs):
         score, losses = one.score, one.score.verdict
         numbers = losses.L, losses.K, losses.R, score.ratio, score.mass
-        row: list[object] = [k, *numbers, *score.chambers, names.get(k)]
+        row: list[object] = [k, *numbers, *score.chambers, _name(k) if k in designs else None]
         if sealed:
             row.append(judge.loss_of(designs[k].values) if k in designs else None)
         rows.append(row)
@@ -103,9 +112,8 @@ def _history_csv(front: Front) -> str:
     lowest = [f"lowest_{name}" for name in front.objectives]
     rows = []
     for record in front.history:
-        values = [one.score.values(front.objectives) for one in record.front]
-        least = [min(column) for column in zip(*values, strict=True)] or [None] * len(lowest)
-        rows.append((record.index, record.evaluations, len(record.front), *least))
+        least = record.values.min(axis=0).tolist() if len(record.values) else [None] * len(lowest)
+        rows.append((record.index, record.evaluations, len(record.values), *least))
     return csv_text(",".join(["generation", "evaluations", "front", *lowest]), rows)
 
 

@@ -5,17 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.bound.certificate import Certificate
+from beamopt.brief import Brief
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
-from beamopt.pareto.search import Candidate, FrontRecord, front_values
+from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
 from beamopt.scene import Scene
 from beamopt.timing import Timing
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Front"]
 
@@ -29,7 +34,8 @@ class Front:
     """The outcome of `find_front`.
 
     status : why it stopped. scene, objectives, population : what was searched for, and how.
-    history : one record a generation, the initial population first.
+    designs : the front, by the first objective, lowest first; each beats no other.
+    history : the numbers of every generation, the initial population first.
     seen : (n, objectives) values of all that were judged.
     rejected : how many could not be judged or may not be made, by reason.
     timing : of the sections that were judged now.
@@ -40,21 +46,25 @@ class Front:
     scene: Scene
     objectives: tuple[str, ...]
     population: int
-    history: tuple[FrontRecord, ...]
+    designs: tuple[Candidate, ...]
+    history: tuple[FrontNumbers, ...]
     seen: FloatArray
     rejected: Mapping[Status, int]
     timing: Timing
     bound: Certificate
 
+    def __repr__(self) -> str:
+        between = " and ".join(self.objectives)
+        return (
+            f"<Front {Brief(self.scene.name)}: {len(self.designs)} designs between {between}, "
+            f"lowest L = {self.lowest_loss:.4g} mm², {self.evaluations} sections judged, "
+            f"{self.status.name}>"
+        )
+
     @property
     def seconds(self) -> float:
         """Time that the search took, without compiling [s]."""
         return self.timing.seconds
-
-    @property
-    def designs(self) -> tuple[Candidate, ...]:
-        """The front, by the first objective, lowest first; each beats no other."""
-        return self.history[-1].front
 
     @property
     def values(self) -> FloatArray:
@@ -95,6 +105,13 @@ class Front:
         shown -= shown.min(axis=0)
         spread = shown.max(axis=0)
         return np.asarray((shown / np.where(spread > 0, spread, 1.0)).sum(axis=1))
+
+    def to_frame(self) -> DataFrame:
+        """Losses, masses and chambers of the front's designs, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from beamopt.pareto.folder import front_csv
+
+        return frame_of(front_csv(self, self.scene.judge(self.scene.load_target())))
 
     def worth_keeping(self) -> list[int]:
         """Places of at most 30 designs along the front: best of each objective, knee, others."""

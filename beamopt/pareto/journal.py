@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from beamopt.errors import InputError
+from beamopt.input_file import read_bytes
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import LineJournal
 from beamopt.pareto.scores import Score
@@ -23,6 +24,8 @@ NO_MATTER = {"stop", "refine", "description"}  # parts of a scene that change no
 
 class FrontJournal:
     """A journal of scores, open for going on; genotypes follow from the scene.
+
+    last_generation : that the last line of the file was of when it was opened; -1 without any.
 
     Raises
     ------
@@ -44,10 +47,13 @@ class FrontJournal:
         }
         self.path = path
         self._lines = LineJournal(path, asked, "search for a front")
+        self.last_generation = len(self._lines.entries) - 1
 
     def replay(self, search: FrontSearch) -> Iterator[list[Score]]:
         """The scores on record, each generation checked against what `search` asks for now."""
-        for number, entry in enumerate(list(self._lines.entries), 2):
+        entries = list(self._lines.entries)
+        self._lines.entries.clear()  # a long search's would fill the memory
+        for number, entry in enumerate(entries, 2):
             asked, judged = search.ask(), entry.get("judged")
             if entry.get("generation") != search.generation or not isinstance(judged, list):
                 raise self._other(number)
@@ -60,16 +66,11 @@ class FrontJournal:
                 raise self._other(number)
             yield known
 
-    @property
-    def last_generation(self) -> int:
-        """The generation that the last line on record is of; -1 without any."""
-        return len(self._lines.entries) - 1
-
     def write(self, search: FrontSearch, scores: Sequence[Score]) -> None:
         """Append the scores of what `search` asks for; call it before telling them."""
         pairs = zip(search.ask(), scores, strict=True)
         judged = [_entry(points, score) for points, score in pairs]
-        self._lines.add({"generation": search.generation, "judged": judged})
+        self._lines.add({"generation": search.generation, "judged": judged}, keep=False)
 
     def _other(self, number: int) -> InputError:
         said = (
@@ -82,7 +83,7 @@ def _digest(scene: Scene) -> str:
     """Of what the target's files hold."""
     state = hashlib.blake2b(digest_size=8)
     for file in scene.target.files:
-        state.update(Path(file).read_bytes())
+        state.update(read_bytes(Path(file)))
     return state.hexdigest()
 
 

@@ -35,6 +35,9 @@ class LinearResponse:
 
     matrix: FloatArray
 
+    def __repr__(self) -> str:
+        return f"<LinearResponse: B {self.matrix.shape}>"
+
     def strains(self, pressures: FloatArray) -> FloatArray:
         """Strains (…, n, 3) at the pressures (n, 3) [kPa]; see `Response.strains`."""
         return np.asarray(np.einsum("...ij,nj->...ni", self.matrix, pressures))

@@ -46,6 +46,14 @@ class CrossSection:
         labels.setflags(write=False)
         object.__setattr__(self, "labels", labels)
 
+    def __repr__(self) -> str:
+        area, chambers = float(self.moments.area), self.moments.chamber_areas.sum()
+        rows, columns = self.grid.shape
+        return (
+            f"<CrossSection: {rows} × {columns} elements, material {area:.4g} mm², "
+            f"chambers {chambers:.4g} mm²>"
+        )
+
     @classmethod
     def from_points(
         cls,

@@ -54,6 +54,10 @@ class FeaturePoints:
     def __len__(self) -> int:
         return self.x.size
 
+    def __repr__(self) -> str:
+        types = ", ".join(str(count) for count in np.bincount(self.type, minlength=4).tolist())
+        return f"<FeaturePoints: {len(self)}, of material and supplies 1, 2, 3: {types}>"
+
     @classmethod
     def random(
         cls,

@@ -27,6 +27,12 @@ class Moments:
 
     raw: FloatArray
 
+    def __repr__(self) -> str:
+        if self.raw.ndim > 2:
+            return f"<Moments: a batch {self.raw.shape[:-2]}>"
+        areas = ", ".join(f"{area:.4g}" for area in self.chamber_areas)
+        return f"<Moments: material {self.area:.4g} mm², chambers {areas} mm²>"
+
     @property
     def area(self) -> FloatArray:
         """(…,) material area A [mm²]."""

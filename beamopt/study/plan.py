@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from beamopt.brief import changed_fields
 from beamopt.bundled import bundled_scenes
 from beamopt.errors import InputError
 from beamopt.scene import Scene, load_scene
@@ -39,6 +40,8 @@ class Run:
     seed: int
     overrides: tuple[str, ...] = ()
     refine: bool = False
+
+    __repr__ = changed_fields
 
     @property
     def name(self) -> str:
@@ -77,6 +80,8 @@ class Plan:
     overrides: tuple[str, ...] = ()
     targets: tuple[str, ...] = TARGETS
     refine: bool = True
+
+    __repr__ = changed_fields
 
     def __post_init__(self) -> None:
         for override in self.overrides:

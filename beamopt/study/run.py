@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -15,16 +15,20 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.files import json_text, refuse_link, write_changed
 from beamopt.folder import FolderKind, claimed, clear_leftovers, own_subfolder
-from beamopt.model import Count, Model, parse, quantity, read_json
+from beamopt.input_file import read_json
+from beamopt.model import Count, Model, parse, quantity
 from beamopt.optimisation import optimize
 from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
-from beamopt.study.pool import processes
+from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
-from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
+from beamopt.study.work import Tasks, check_none_lost, solve_all
 from beamopt.timing import read_times
 
 __all__ = ["run_study"]
+
+Callback = Callable[[Outcome, int, int], None]
 
 
 KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
@@ -47,9 +51,9 @@ def run_study(
     *,
     workers: int = 1,
     resume: bool = False,
-    callback: Callable[[Outcome, int, int], None] | None = None,
+    callback: Callback | None = None,
     figures: bool = True,
-) -> list[Outcome]:
+) -> StudyOutcomes:
     """Run every search of a study and write its table, figures and designs to `out`.
 
     Parameters
@@ -63,11 +67,12 @@ def run_study(
 
     Returns
     -------
-    list of Outcome : in the order of the table.
+    StudyOutcomes : a list of outcomes in the order of the table.
 
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+    NotComputedError : the processes of some searches died; all others are done.
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
@@ -76,12 +81,7 @@ def run_study(
         run.scene().load_target()  # complains before anything is written
     with claimed(folder, KIND, resume=resume):
         _prepare(folder, plan)
-        outcomes: dict[Run, Outcome] = {}
-        for outcome in _outcomes(runs, folder, workers):
-            outcomes[outcome.run] = outcome
-            if callback is not None:
-                callback(outcome, len(outcomes), len(runs))
-        ordered = [outcomes[run] for run in runs]
+        ordered = StudyOutcomes(_outcomes(runs, folder, workers, callback))
         seconds = time.perf_counter() - started
         write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered
@@ -94,13 +94,13 @@ def run_one(run: Run, folder: Path) -> Outcome:
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
-    last, times = result.history[-1], read_times(own / "timing.csv")
+    last, times = result.last, read_times(own / "timing.csv")
     return Outcome(
         run,
         last.best.verdict,
         last.best_ever.verdict.L,
         result.evaluations,
-        tuple(record.best.verdict.L for record in result.history),
+        tuple(record.best_loss for record in result.history),
         times.get("search", math.nan),
         None
         if result.refinement is None
@@ -120,15 +120,20 @@ def _refined(found: Refinement, seconds: float) -> RefinedOutcome:
     )
 
 
-def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outcome]:
-    """Outcomes as they come: from this process, or from `workers` others."""
-    if workers == 1:
-        yield from (run_one(run, folder) for run in runs)
-        return
-    with processes(workers) as executor:
-        futures = [executor.submit(run_one, run, folder) for run in runs]
-        for future in as_completed(futures):
-            yield future.result()
+def _outcomes(
+    runs: Sequence[Run], folder: Path, workers: int, callback: Callback | None
+) -> list[Outcome]:
+    """Outcomes of all runs, in this process or in `workers` others."""
+    by_name = {run.name: run for run in runs}
+    work = Tasks(run_one, {name: (run, folder) for name, run in by_name.items()})
+
+    def keep(_: str, outcome: Outcome | None) -> None:
+        if outcome is not None and callback is not None:
+            callback(outcome, len(work.results) - len(work.lost), len(runs))
+
+    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
+    check_none_lost(work, "--resume searches again")
+    return [outcome for name in by_name if (outcome := work.results[name]) is not None]
 
 
 def _prepare(folder: Path, plan: Plan) -> None:

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamopt.brief import Brief
 from beamopt.files import csv_text
 from beamopt.judge import Verdict
 from beamopt.study.plan import COMBINATIONS, Run
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = [
     "PAPER",
     "Outcome",
     "RefinedOutcome",
+    "StudyOutcomes",
     "comparison_markdown",
     "row",
     "table_csv",
@@ -69,6 +75,25 @@ class Outcome:
     lowest: tuple[float, ...]
     seconds: float
     refined: RefinedOutcome | None = None
+
+    def __repr__(self) -> str:
+        run = Brief(self.run.name)
+        return f"<Outcome {run}: L = {self.final.L:.4g} mm², {self.evaluations} sections judged>"
+
+
+class StudyOutcomes(list[Outcome]):
+    """Outcomes of the runs of a study, in the order of its table."""
+
+    def __repr__(self) -> str:
+        losses = [one.final.L for one in self]
+        lowest = f", lowest L = {min(losses):.4g} mm²" if losses else ""
+        return f"<StudyOutcomes: {len(self)} runs{lowest}>"
+
+    def to_frame(self) -> DataFrame:
+        """Runs, then the best, mean and worst of each kind, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+
+        return frame_of(table_csv(self))
 
 
 SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Ending", "Source", "Tried", "Within"]
 
@@ -69,6 +73,19 @@ class Within:
     tried: tuple[Tried, ...]
     reason: str
     source: Source = Source.NOTHING
+
+    def __repr__(self) -> str:
+        return (
+            f"<Within {self.accuracy:g} mm: {self.ending.name}, {self.chosen}, "
+            f"error up to {self.worst:.2g} mm, {len(self.tried)} models tried>"
+        )
+
+    def to_frame(self) -> DataFrame:
+        """Tips with their estimated errors, beside the beam's, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.accuracy.run import tips_csv
+
+        return frame_of(tips_csv(self))
 
     @property
     def seconds(self) -> float:

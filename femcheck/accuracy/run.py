@@ -23,7 +23,7 @@ from femcheck.check.folder import PACKAGES
 from femcheck.models.question import Question
 from femcheck.models.reply import Model
 
-__all__ = ["beam_difference", "run_accuracy"]
+__all__ = ["beam_difference", "run_accuracy", "tips_csv"]
 
 JOURNAL = "journal.jsonl"
 KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',))
@@ -104,7 +104,7 @@ def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
 
 def _write(found: Within, out: Path) -> None:
     found.question.design.save(out / "design.json")
-    write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
+    write_atomic(out / "tips.csv", tips_csv(found))
     tried = [
         (one.name, one.reply.unknowns, one.reply.size,
          int(one.reply.found.sum()), len(one.reply.endings))
@@ -115,6 +115,11 @@ def _write(found: Within, out: Path) -> None:
     write_atomic(out / "timing.csv", csv_text("what,value,unit", times))
     write_atomic(out / "summary.json", json_text(_summary(found)))
     write_atomic(out / "provenance.json", json_text(provenance(PACKAGES)))
+
+
+def tips_csv(found: Within) -> str:
+    """Tips with their estimated errors, beside the beam's."""
+    return csv_text(TIPS, _tips(found))
 
 
 def _tips(found: Within) -> Iterator[tuple[object, ...]]:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamopt.brief import Brief
 from femcheck.chart.lineup import line_up
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Reference
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["ACCURACIES", "Chart", "Row"]
 
@@ -51,6 +56,12 @@ class Chart:
     rows: tuple[Row, ...]
     reference: Reference | None
 
+    def __repr__(self) -> str:
+        return (
+            f"<Chart {Brief(self.question.name)}: {len(self.rows)} models, "
+            f"reference within {self.uncertainty:.2g} mm>"
+        )
+
     @classmethod
     def of(
         cls,
@@ -74,6 +85,13 @@ class Chart:
             for one in measured
         ]
         return cls(question, tuple(rows), reference)
+
+    def to_frame(self) -> DataFrame:
+        """Error, cost and ending of every model, a row each, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.chart.table import chart_csv
+
+        return frame_of(chart_csv(self))
 
     @property
     def uncertainty(self) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Executor, Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +18,13 @@ from beamopt.line_journal import LineJournal
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
 from beamopt.study.pool import processes
-from femcheck.chart.chart import ACCURACIES, Chart, Row
+from beamopt.study.work import solve_all
+from femcheck.chart.chart import ACCURACIES, Chart
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.chart.table import chart_csv
 from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
@@ -32,7 +34,6 @@ from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
-CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
 KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
 NAMES = (
@@ -105,9 +106,8 @@ def _measure(
     """Ask what is not measured yet."""
     asked = {key_of(model) for one in series for model in one.all}
 
-    def keep(one: Measured) -> None:
+    def keep(_: str, one: Measured) -> None:
         line = written(one)
-        measured[line["model"]] = one
         if np.isfinite(one.seconds):  # what was left out may be asked with more time
             journal.add(line)
         if progress is not None:
@@ -115,60 +115,53 @@ def _measure(
 
     if progress is not None:
         progress(len(asked & measured.keys()), len(asked), "starting")
-    _ask(question, series, measured, budget, lambda: pool(workers), workers, keep)
+    work = _ChartWork(question, series, budget, measured)
+    solve_all(work, lambda: pool(workers), workers, keep)
 
 
-def _ask(
-    question: Question,
-    series: Sequence[Series],
-    measured: dict[str, Measured],
-    budget: Budget,
-    pool: Callable[[], AbstractContextManager[Executor]],
-    workers: int,
-    keep: Callable[[Measured], None],
-) -> None:
-    """Each series from coarse to fine; a finer model waits until its cost can be guessed."""
-    left = {one.family: [m for m in one.all if key_of(m) not in measured] for one in series}
-    while any(left.values()):
-        running: dict[Future[Measured], tuple[str, Model]] = {}
-        with pool() as executor:
-            try:
-                while _begin(
-                    question, series, left, measured, running, budget, executor, workers, keep
-                ):
-                    finished, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in finished:
-                        measured_one = future.result()
-                        running.pop(future)
-                        keep(measured_one)
-            except BrokenProcessPool:
-                for _, model in running.values():  # one of them is to blame; --resume asks again
-                    keep(_without(question, model, Ended(Status.STOPPED)))
+@dataclass
+class _ChartWork:
+    """Each series from coarse to fine: a finer model waits until its cost can be guessed.
 
+    results : replies by model, those of earlier charts among them.
+    """
 
-def _begin(
-    question: Question,
-    series: Sequence[Series],
-    left: dict[str, list[Model]],
-    measured: dict[str, Measured],
-    running: dict[Future[Measured], tuple[str, Model]],
-    budget: Budget,
-    executor: Executor,
-    workers: int,
-    keep: Callable[[Measured], None],
-) -> bool:
-    """Have as many models asked as there are workers, one of a family; whether any is running."""
-    busy = {name for name, _ in running.values()}
-    for one in series:
-        waiting = left[one.family]
-        if one.family in busy:  # what is coming tells what the next one will cost
-            continue
-        while waiting and (why := _too_dear(one, waiting[0], measured, budget)):
-            keep(_without(question, waiting.pop(0), why))
-        if waiting and len(running) < workers:
-            model = waiting.pop(0)
-            running[executor.submit(measure, question, model)] = one.family, model
-    return bool(running)
+    question: Question
+    series: Sequence[Series]
+    budget: Budget
+    results: dict[str, Measured]
+
+    def __post_init__(self) -> None:
+        self._models = {key_of(m): (one, m) for one in self.series for m in one.all}
+
+    @property
+    def keys(self) -> list[str]:
+        """Series by series."""
+        return list(self._models)
+
+    def begin(self, executor: Executor, waiting: Sequence[str]) -> bool:
+        """Nothing comes before the models."""
+        return True
+
+    def is_ready(self, key: str) -> bool:
+        """Whether all coarser models of its series are done."""
+        series, model = self._models[key]
+        coarser = takewhile(lambda one: one is not model, series.all)
+        return all(key_of(one) in self.results for one in coarser)
+
+    def submit(self, executor: Executor, key: str) -> Future[Measured]:
+        """Have a model asked; one that takes too long is left out."""
+        series, model = self._models[key]
+        why = _too_dear(series, model, self.results, self.budget)
+        if why is None:
+            return executor.submit(measure, self.question, model)
+        left_out: Future[Measured] = Future()
+        left_out.set_result(_without(self.question, model, why))
+        return left_out
+
+    def stopped(self, key: str) -> Measured:
+        """The reply of a model whose process died; --resume asks it again."""
+        return _without(self.question, self._models[key][1], Ended(Status.STOPPED))
 
 
 def _too_dear(
@@ -203,7 +196,7 @@ def _without(question: Question, model: Model, why: Ended) -> Measured:
 
 
 def _write(chart: Chart, out: Path, workers: int) -> None:
-    write_atomic(out / "chart.csv", csv_text(CHART, [_cells(row) for row in chart.rows]))
+    write_atomic(out / "chart.csv", chart_csv(chart))
     best = [
         (accuracy, one.measured.family, one.measured.resolution, one.error, one.measured.seconds)
         for accuracy in ACCURACIES
@@ -216,11 +209,3 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     about = {"measured_with": chart.made_with, **provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
     save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
-
-
-def _cells(row: Row) -> tuple[object, ...]:
-    one, reply = row.measured, row.measured.reply
-    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
-    found = int(reply.found.sum())
-    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
-    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)

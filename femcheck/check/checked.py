@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+from beamopt.brief import Brief
 from femcheck.check.case import CaseResult
 from femcheck.check.comparison import Comparison
 from femcheck.check.options import CheckOptions
@@ -12,6 +14,9 @@ from femcheck.check.stage import Stage
 from femcheck.check.subject import GeometrySteps, Subject
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import Quality
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Checked"]
 
@@ -31,6 +36,20 @@ class Checked:
     quality: Quality | None
     stages: tuple[Stage, ...]
     results: dict[Key, CaseResult]
+
+    def __repr__(self) -> str:
+        name = Brief(self.subject.name)
+        if self.comparison is None:
+            return f"<Checked {name}: {Brief(str(self.failure))}>"
+        ended = "holds" if self.holds else "does not hold"
+        return f"<Checked {name}: {ended}, {self.comparison!r}>"
+
+    def to_frame(self) -> DataFrame:
+        """Tips of every solid beside the beam's (`compare.csv`), as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.check.tables import compare_csv
+
+        return frame_of(compare_csv(self))
 
     @property
     def certain(self) -> bool:

@@ -11,7 +11,7 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import FolderKind, claimed, clear_leftovers, differences, own_subfolder
-from beamopt.model import read_json
+from beamopt.input_file import read_bytes, read_json
 from beamopt.provenance import provenance
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
@@ -47,23 +47,24 @@ class CheckFolder:
         ------
         InputError : it holds another design's verdict or question's, or see `claimed`.
         """
+        asked = {"schema": "femcheck/1", "design": subject.name, "question": dict(question)}
+        text, design_text = json_text(asked), subject.design.json()  # before the folder is made
         with claimed(path, KIND, resume=resume):
             folder = cls(path)
-            folder._begin(subject, question)
+            folder._begin(text, design_text)
             yield folder
 
-    def _begin(self, subject: Subject, question: Mapping[str, object]) -> None:
-        asked = {"schema": "femcheck/1", "design": subject.name, "question": dict(question)}
+    def _begin(self, text: str, design_text: str) -> None:
         there, design = self.path / MARKER, self.path / "design.json"
         if there.exists():
             kept = read_json(there)
-            for key, before, now in differences(kept, json.loads(json_text(asked))):
+            for key, before, now in differences(kept, json.loads(text)):
                 said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
                 raise InputError(there, key, before, said)
-            if design.exists() and design.read_text(encoding="utf-8") != subject.design.json():
+            if design.exists() and read_bytes(design) != design_text.encode():
                 raise InputError(design, "", None, "differs from the design asked for now")
-        write_atomic(there, json_text(asked))
-        subject.design.save(design)
+        write_atomic(there, text)
+        write_atomic(design, design_text)
         own_subfolder(self.cases)
         if self.deformed.exists():
             own_subfolder(self.deformed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from beamopt.brief import changed_fields
 from beamopt.errors import InputError
 from femcheck.check.solid_options import SolidOptions
 
@@ -24,6 +25,8 @@ class CheckOptions(SolidOptions):
     """
 
     penalties: tuple[float, float] = (2500.0, 10000.0)
+
+    __repr__ = changed_fields
 
     def __post_init__(self) -> None:
         SolidOptions.__post_init__(self)

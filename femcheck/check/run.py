@@ -11,6 +11,7 @@ import numpy as np
 
 import femcheck.picture as picture
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.case import CaseResult, Solid
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import compare
@@ -22,7 +23,6 @@ from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject, geometry_steps
 from femcheck.check.tables import tables_of
-from femcheck.check.work import solve_all
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure

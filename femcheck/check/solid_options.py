@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field
 
+from beamopt.brief import changed_fields
 from beamopt.errors import InputError
 from femcheck.continuation.limits import Limits
 from femcheck.mesh.geo import SectionSizes
@@ -44,6 +45,8 @@ class SolidOptions:
     seconds: float = math.inf
     solver: str = "auto"
     mesher: Mesher = field(default_factory=Mesher)
+
+    __repr__ = changed_fields
 
     def __post_init__(self) -> None:
         if self.element not in ELEMENTS:

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from beamopt.files import write_atomic
+from beamopt.input_file import MOST_MESH, read_bytes
 
 __all__ = ["read_arrays", "write_arrays"]
 
@@ -24,6 +25,7 @@ MARK = b"\nblake2b-16 "  # before the digest; files of earlier versions end with
 
 DAMAGED = (
     *(OSError, ValueError, KeyError, EOFError),
+    MemoryError,  # an array that the file has no room for
     # headers with a bit turned over: encrypted, compressed, of no size
     *(zipfile.BadZipFile, RuntimeError, SyntaxError, zlib.error, struct.error),
 )
@@ -43,13 +45,13 @@ def read_arrays(file: Path, convert: Callable[[Any], T | None]) -> T | None:
     A file that is damaged is None too, and logged: its result is to be computed again.
     """
     try:
-        content, mark, digest = _parts(file.read_bytes())
+        if not file.exists():
+            return None
+        content, mark, digest = _parts(read_bytes(file, MOST_MESH))
         if mark and digest != _digest(content):
             raise ValueError("the digest is of another content")
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             return convert(arrays)
-    except FileNotFoundError:
-        return None
     except DAMAGED as error:
         LOG.warning("%s can not be read, its result is computed again: %s", file, error)
         return None

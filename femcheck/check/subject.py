@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.brief import Brief
 from beamopt.design import Design
 from beamopt.outline.faults import Fault, FaultKind, Severity
 from beamopt.outline.outline import Outline
@@ -56,6 +57,9 @@ class Subject:
     name: str
     design: Design
     sealing_moved: FloatArray | None = None
+
+    def __repr__(self) -> str:
+        return f"<Subject {Brief(self.name)}: {self.design!r}>"
 
     def __post_init__(self) -> None:
         check_unloaded(self.name, self.design)

@@ -28,9 +28,9 @@ def report_command(runs: Sequence[Path], out: Path, title: str, *, force: bool) 
     if out.suffix.lower() not in ENDINGS:
         raise InputError("--out", "", out.name, "must end in .html")
     check_replaceable(out, MARK, "femcheck report", force=force)
-    page = report_page(runs, title)
+    page = report_page(runs, title).encode("utf-8", "backslashreplace")  # names of any bytes
     write_atomic(out, page)
-    size = len(page.encode("utf-8")) / 1e6
+    size = len(page) / 1e6
     console.print(f"{out}  {size:.2f} MB", soft_wrap=True, markup=False, highlight=False)
     if size > LARGE:
         said = f"above {LARGE:g} MB: slow to open, may be too large to send; take fewer folders"

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
+from beamopt.brief import Brief, changed_fields
 from beamopt.outline.outline import Outline
 from beamopt.scratch import scratch_folder
 from femcheck.mesh.geo import SectionSizes, geo_script
@@ -53,6 +54,9 @@ class MeshFailure:
     problem: MeshProblem
     detail: str = ""
 
+    def __repr__(self) -> str:
+        return f"<MeshFailure {self.problem.name}: {Brief(self.detail)}>"
+
     def __str__(self) -> str:
         return f"{self.problem.value}: {self.detail}" if self.detail else self.problem.value
 
@@ -67,6 +71,8 @@ class Mesher:
 
     command: str | None = None
     seconds: float = 600.0
+
+    __repr__ = changed_fields
 
     def mesh(self, outline: Outline, sizes: SectionSizes) -> SectionMesh | MeshFailure:
         """Triangulate a section, or say why that failed."""

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.brief import Brief
 from beamopt.design import Design
 from beamopt.workspace import pressure_grid
 from femcheck.check.options import CheckOptions
@@ -35,6 +36,10 @@ class Question:
     design: Design
     law: LawChoice
     pressures: FloatArray
+
+    def __repr__(self) -> str:
+        count = len(self.pressures)
+        return f"<Question {Brief(self.name)}: {count} tips, {self.law_text}>"
 
     @classmethod
     def of(

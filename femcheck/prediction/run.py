@@ -14,11 +14,11 @@ import femcheck.picture as picture
 from beamopt.arrays import FloatArray
 from beamopt.plot.style import save_figure
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.case import Solid
 from femcheck.check.folder import CheckFolder
 from femcheck.check.meshes import heights_of, section_meshes
 from femcheck.check.subject import Subject
-from femcheck.check.work import solve_all
 from femcheck.continuation.outcome import Status
 from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure

@@ -11,7 +11,8 @@ from pydantic import AfterValidator, Field
 from beamopt.errors import InputError
 from beamopt.files import check_replaceable, json_text, write_atomic
 from beamopt.folder import FolderKind
-from beamopt.model import Model, Number, parse, read_json
+from beamopt.input_file import read_json
+from beamopt.model import Model, Number, parse
 from beamopt.model import quantity as described
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import OLD_FAULTS, ended_of

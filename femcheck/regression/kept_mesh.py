@@ -11,6 +11,7 @@ import numpy as np
 from beamopt.design import Design
 from beamopt.errors import InputError
 from beamopt.files import check_replaceable, replacing
+from beamopt.input_file import MOST_MESH, check_regular, read_bytes
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
 from beamopt.outline.ring import usual_sagitta
@@ -78,7 +79,7 @@ def read_kept(file: Path) -> SectionMesh:
 
 def is_of(file: Path, digest: str) -> bool:
     """Whether a file holds the mesh of the design of a digest; false where there is no file."""
-    return file.exists() and _comment(digest).encode() in file.read_bytes()
+    return file.exists() and _comment(digest).encode() in read_bytes(file, MOST_MESH)
 
 
 def _comment(digest: str) -> str:
@@ -122,9 +123,10 @@ def mesh_digest(file: Path) -> str:
     InputError : the file is missing.
     """
     _require(file)
-    return hashlib.blake2b(file.read_bytes(), digest_size=12).hexdigest()
+    return hashlib.blake2b(read_bytes(file, MOST_MESH), digest_size=12).hexdigest()
 
 
 def _require(file: Path) -> None:
     if not file.exists():
         raise InputError(file, "", None, "missing: `femcheck baseline` writes it")
+    check_regular(file, MOST_MESH)

@@ -14,7 +14,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import cell_text
-from beamopt.model import read_json, read_text
+from beamopt.input_file import read_json, read_text
 
 __all__ = ["Record", "Table", "read_record", "read_table"]
 
@@ -66,9 +66,13 @@ class Record:
         value = self._value(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(self.file, key, value, "must be a number")
-        if not math.isfinite(value):
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number beyond every float
+            number = math.inf
+        if not math.isfinite(number):
             raise InputError(self.file, key, value, "must be a finite number")
-        return float(value)
+        return number
 
     def number_or_nan(self, key: str) -> float:
         """A finite number; NaN where it is null or not there."""

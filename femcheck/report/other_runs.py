@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beamopt.folder import design_file
-from beamopt.model import read_text
+from beamopt.input_file import read_text
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
 

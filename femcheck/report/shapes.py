@@ -10,6 +10,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.errors import InputError
+from beamopt.input_file import MOST_MESH, check_regular
 from beamopt.rod.arc import arc_centreline
 from beamopt.workspace import NODES
 from femcheck.mesh.files import DISPLACEMENT, TAGS, VTU_WEDGE
@@ -198,6 +199,7 @@ def _mesh(file: Path) -> Any:
     if not file.is_file():
         said = "is missing; make the folder again, or go on with --resume, which writes it"
         raise InputError(file, "", None, said)
+    check_regular(file, MOST_MESH)
     try:
         return vtu.read(str(file))
     except Exception as error:  # a reader of damaged bytes may fall over anything

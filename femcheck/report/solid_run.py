@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from beamopt.arrays import FloatArray
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.model import read_text
+from beamopt.input_file import read_text
 from beamopt.workspace import NODES
 from femcheck.check.subject import LoadedDesignError, Subject
 from femcheck.continuation.ended import Ended

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
@@ -12,11 +11,12 @@ from typing import Any
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
 from beamopt.folder import FolderKind, claimed, clear_leftovers
+from beamopt.input_file import read_json
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance, thread_settings
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.folder import PACKAGES
-from femcheck.check.work import solve_all
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
@@ -121,9 +121,9 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
 def _computed_before(out: Path) -> dict[str, Any]:
     """What the map was computed with, as it was said then; empty if it was not."""
     try:
-        said = dict(json.loads((out / "provenance.json").read_text(encoding="utf-8")))
+        said = read_json(out / "provenance.json")
         return {key: value for key, value in said.items() if key != WRITTEN}
-    except (OSError, ValueError, KeyError, TypeError):
+    except InputError:
         return {}
 
 

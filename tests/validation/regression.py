@@ -83,8 +83,8 @@ FAULTS = (
     Fault(
         "a wall off by one",
         "beamopt.section.walls",
-        "return wall_elements // 2",
-        "return wall_elements // 2 + 1",
+        "else wall_elements // 2",
+        "else wall_elements // 2 + 1",
         "section",
         ("random-section",),
     ),
