@@ -17,6 +17,15 @@ class InputError(ValueError):
     key : the key, row or field, as a person finds it in that file ("grid.radial").
     value : what stands there; None when it is too long to show, or nothing.
     allowed : what may stand there, and the way out where there is one.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> try:
+    ...     beamopt.load_scene("random-section", ["grid.radial=3"])
+    ... except beamopt.InputError as error:
+    ...     print(error.key, error.value, "|", error.allowed)
+    grid.radial 3 | allowed: 4 … 4096
     """
 
     def __init__(self, where: object, key: str, value: object, allowed: str) -> None:
@@ -42,6 +51,17 @@ class NoEquilibriumError(ValueError):
     """A tip was asked for where the loaded rod has no stable equilibrium.
 
     pressures : (3,) [kPa]. status : a `RodStatus`, whose value is the text for people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> design = beamopt.load_design(str(beamopt.load_scene("sealed-section").target.file))
+    >>> try:
+    ...     tips = design.workspace.tips
+    ... except beamopt.NoEquilibriumError as error:
+    ...     print(error.pressures, error.status)
+    >>> tips.shape
+    (27, 3)
     """
 
     def __init__(self, pressures: Sequence[float], status: Enum) -> None:

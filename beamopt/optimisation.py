@@ -50,6 +50,14 @@ def optimize(
     Raises
     ------
     InputError : the target, or the folder or journal to go on with, can not be used.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
+    >>> found = beamopt.optimize(scene, "run", figures=False)
+    >>> found.evaluations
+    38
     """
     target = scene.load_target()
     with ExitStack() as held:

@@ -56,6 +56,14 @@ class Optimisation:
     timing : of the sections that were judged now.
     refinement : of the best design, where the scene asks for it and there was one.
     there : what became of a refinement that the run folder held already.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> found: beamopt.Optimisation = beamopt.optimize(scene)
+    >>> found.status.name
+    'GENERATIONS'
     """
 
     status: StopReason

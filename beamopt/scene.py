@@ -47,7 +47,14 @@ SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how m
 
 
 class SectionRules(Model):
-    """How a section is made from feature points."""
+    """How a section is made from feature points.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.SectionRules(feature_points=40).material_probability
+    0.5
+    """
 
     feature_points: Count = quantity(
         100, "feature points of a new section, N_f", low=1, high=10_000
@@ -61,7 +68,14 @@ class SectionRules(Model):
 
 
 class Pressures(Model):
-    """What the supplies can give."""
+    """What the supplies can give.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Pressures(levels=(0.0, 10.0, 20.0)).levels[-1]
+    20.0
+    """
 
     levels: Levels = quantity(
         (0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", unit="kPa"
@@ -69,7 +83,14 @@ class Pressures(Model):
 
 
 class Scene(Model):
-    """Everything that a search needs, as one checked and frozen object."""
+    """Everything that a search needs, as one checked and frozen object.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Scene(name="short", actuator=beamopt.Actuator(length=80.0))
+    <Scene 'short': target random, r 10…25 mm, 20 individuals, 100 generations, seed 0>
+    """
 
     schema_: Literal["beamopt-scene/1"] = Field(
         "beamopt-scene/1", alias="schema", description="version of this file's format"
@@ -246,6 +267,12 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.load_scene("random-section", ["search.generations=50"]).search.generations
+    50
     """
     path = bundled_scenes().get(str(scene), Path(scene))
     if not path.exists():

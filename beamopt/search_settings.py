@@ -10,7 +10,14 @@ __all__ = ["Refining", "Search", "Stop"]
 
 
 class Search(Model):
-    """The genetic algorithm."""
+    """The genetic algorithm.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Search(generations=50).population
+    20
+    """
 
     population: Count = quantity(20, "individuals, N_p", low=2, high=10_000)
     generations: Count = quantity(100, "generations, N_g", low=0, high=1_000_000)
@@ -30,7 +37,14 @@ class Search(Model):
 
 
 class Stop(Model):
-    """Reasons to stop before the last generation; a key that is left out never does."""
+    """Reasons to stop before the last generation; a key that is left out never does.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Stop(evaluations=500)
+    Stop(evaluations=500)
+    """
 
     evaluations: Count | None = quantity(
         None, "most sections judged; the first population is", low=1
@@ -41,7 +55,14 @@ class Stop(Model):
 
 
 class Refining(Model):
-    """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions."""
+    """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Refining(rounds=2).rounds
+    2
+    """
 
     finish: bool = quantity(False, "whether a search ends by refining its best design")
     flips: Count = quantity(40_000, "flips of a type proposed in a round", low=0, high=10**9)

@@ -27,6 +27,13 @@ class Target:
     workspace : where the aim's rows are its 27 nodes; else None.
     paths : (k, 3) samples of each trajectory [mm], corners included; joined in `aim.paths`.
     warnings : sentences for people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> target: beamopt.Target = beamopt.load_scene("hand-drawn-workspace").load_target()
+    >>> target
+    <Target: <Workspace: 27 tips at 0, 5, 10 kPa, up to 73.34 mm off the axis>, 0 trajectories>
     """
 
     aim: Aim

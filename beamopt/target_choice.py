@@ -31,6 +31,12 @@ class TargetChoice(Model):
     a CSV file with the columns p1,p2,p3,x,y,z at all 27 combinations; "points": such a file with
     rows at any pressures, also with the columns weight, tx,ty,tz (direction of the tip's axis) and
     direction_weight; "paths": nothing but the trajectories of `paths`, which go with any kind.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.TargetChoice(kind="random", seed=3).seed
+    3
     """
 
     kind: Literal["random", "section", "workspace", "points", "paths"] = quantity(

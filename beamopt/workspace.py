@@ -99,6 +99,14 @@ class Workspace:
     Raises
     ------
     ValueError : levels that do not ascend, or tips of another shape.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> design = beamopt.load_design(str(beamopt.load_scene("sealed-section").target.file))
+    >>> workspace: beamopt.Workspace = design.workspace
+    >>> workspace.tips[0].round(6).tolist()
+    [0.0, 0.0, 100.0]
     """
 
     levels: tuple[float, float, float]

@@ -19,6 +19,7 @@ from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound.work import MOST_WORK
 from beamopt.bound_folder import claimed_for_bound, write_bound
+from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, work_progress
 from beamopt.design import load_design
@@ -65,6 +66,7 @@ def bound_command(
     for note in (*notes, *target.warnings):
         console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
+    end_with(ExitCode.HOLDS if found.status.is_bound else ExitCode.NOT_COMPUTED)
 
 
 def _scene_of(

@@ -40,6 +40,14 @@ class Front:
     rejected : how many could not be judged or may not be made, by reason.
     timing : of the sections that were judged now.
     bound : how low L can be, whatever the section, or why that is not known.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> front: beamopt.Front = beamopt.find_front(scene, ["L", "mass"], population=8)
+    >>> bool((front.values[1:, 0] > front.values[:-1, 0]).all())
+    True
     """
 
     status: StopReason

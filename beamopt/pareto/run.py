@@ -63,6 +63,13 @@ def find_front(
     InputError : the target, or the folder or journal to go on with, can not be used; the search
         there has more generations than are asked for; or another process is writing to it.
     ImportError : pymoo is not installed.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> beamopt.find_front(scene, ["L", "mass"], population=8).evaluations
+    8
     """
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()

@@ -73,6 +73,14 @@ def run_study(
     ------
     InputError : `out` holds something else, or can not be written.
     NotComputedError : the processes of some searches died; all others are done.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> small = ("search.generations=0",)
+    >>> plan = beamopt.Plan(1, overrides=small, targets=("random-section",), refine=False)
+    >>> len(beamopt.run_study("study", plan, figures=False))
+    4
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)

@@ -66,6 +66,13 @@ class Outcome:
     final : losses of the individual with the lowest L in the last population, the paper's metric.
     best_ever : the lowest L [mm²] of all that the run judged.
     lowest : (generations + 1,) lowest L [mm²] of each generation's population.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> run = beamopt.Plan().runs()[0]
+    >>> beamopt.Outcome(run, beamopt.Verdict(10.0, 2.0), 9.0, 1820, (10.0,), 1.5)
+    <Outcome 'random-section-FD-1': L = 10 mm², 1820 sections judged>
     """
 
     run: Run
@@ -82,7 +89,16 @@ class Outcome:
 
 
 class StudyOutcomes(list[Outcome]):
-    """Outcomes of the runs of a study, in the order of its table."""
+    """Outcomes of the runs of a study, in the order of its table.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> run = beamopt.Plan().runs()[0]
+    >>> outcome = beamopt.Outcome(run, beamopt.Verdict(10.0, 2.0), 9.0, 1820, (10.0,), 1.5)
+    >>> beamopt.StudyOutcomes([outcome])
+    <StudyOutcomes: 1 runs, lowest L = 10 mm²>
+    """
 
     def __repr__(self) -> str:
         losses = [one.final.L for one in self]

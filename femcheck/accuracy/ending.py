@@ -19,7 +19,14 @@ __all__ = ["Ending", "Source", "Tried", "Within"]
 
 
 class Ending(Enum):
-    """How it ended; the value is the text shown to people."""
+    """How it ended; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Ending.REACHED.value
+    'accuracy reached'
+    """
 
     REACHED = "accuracy reached"
     NOT_REACHED = "accuracy not reached: the finest model's estimate is larger, or a tip was lost"
@@ -63,6 +70,17 @@ class Within:
     tried : all models that were asked, the last one's reply is the answer.
     reason : why this rung, in a sentence.
     source : where the estimate is from.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> within: femcheck.Within = femcheck.answer_within(question, 0.1)
+    >>> within.ending.name, within.chosen
+    ('REACHED', 'beam')
     """
 
     question: Question

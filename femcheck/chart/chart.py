@@ -50,7 +50,18 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """All rows of a question. reference : None where nothing could be extrapolated."""
+    """All rows of a question. reference : None where nothing could be extrapolated.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> femcheck.Chart.of(question, [], None)
+    <Chart 'round': 0 models, reference within inf mm>
+    """
 
     question: Question
     rows: tuple[Row, ...]

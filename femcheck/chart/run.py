@@ -79,6 +79,18 @@ def run_chart(
     Raises
     ------
     InputError : `out` holds something else, or can not be written; there is no such family.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> chart = femcheck.run_chart(question, Path("chart"), families=["beam"])
+    >>> len(chart.rows)
+    1
     """
     series = line_up(question, families)
     if not series:

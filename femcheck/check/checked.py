@@ -26,6 +26,18 @@ class Checked:
     """What a check found.
 
     failure : why there is no solid; what follows is then None or empty.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> without = femcheck.CheckOptions(mesher=femcheck.Mesher("no-such-gmsh"))
+    >>> checked: femcheck.Checked = femcheck.check_design(subject, Path("checked"), without)
+    >>> checked.holds, checked.failure
+    (False, <MeshFailure NO_GMSH: 'no-such-gmsh'>)
     """
 
     subject: Subject

@@ -54,6 +54,22 @@ class Comparison(BesideBeam):
     solids : what was computed, and extrapolated.
     refinement : layers of the standard mesh over those of the coarse one.
     order : p of the tip's convergence with the layers; None where it is not known.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> quick = femcheck.CheckOptions(
+    ...     layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> checked = femcheck.check_design(subject, Path("compared"), quick)
+    >>> compared: femcheck.Comparison | None = checked.comparison
+    >>> if compared is not None:
+    ...     print(compared.final.tips.shape, compared.unanswered)
+    (27, 3) 0
     """
 
     subject: Subject

@@ -58,6 +58,20 @@ def check_design(
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> quick = femcheck.CheckOptions(
+    ...     layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> checked = femcheck.check_design(subject, Path("checked"), quick)
+    >>> checked.comparison is not None and checked.comparison.unanswered
+    0
     """
     with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
         checked = _checked(subject, folder, options, workers, progress, pool)

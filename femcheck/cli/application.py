@@ -111,7 +111,8 @@ def run_designs(
 ) -> None:
     """Mesh designs, load their chambers, and compare the solid's tips with the beam's.
 
-    Ends with 0 if every design agrees, 1 if one does not or has cases without an answer.
+    Ends with 0 if every design agrees, 1 if one does not or has no equilibrium, 3 if cases could
+    not be computed.
     """
     from femcheck.cli.request import RunRequest
     from femcheck.cli.run import run_command

@@ -26,7 +26,14 @@ __all__ = ["MeshFailure", "MeshProblem", "Mesher", "read_section"]
 
 
 class MeshProblem(Enum):
-    """Why there is no mesh; the value is the text shown to people."""
+    """Why there is no mesh; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.MeshProblem.NO_GMSH.value
+    'gmsh is not installed'
+    """
 
     NO_GMSH = "gmsh is not installed"
     CRASHED = "gmsh crashed"
@@ -49,7 +56,18 @@ class MeshProblem(Enum):
 
 @dataclass(frozen=True, slots=True)
 class MeshFailure:
-    """No mesh, and why."""
+    """No mesh, and why.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> found = femcheck.Mesher("no-such-gmsh").mesh(subject.outline, femcheck.SectionSizes())
+    >>> isinstance(found, femcheck.MeshFailure) and found.problem.name
+    'NO_GMSH'
+    """
 
     problem: MeshProblem
     detail: str = ""
@@ -67,6 +85,12 @@ class Mesher:
 
     command : the executable; None takes the first on the path, then the one beside python.
     seconds : of a clock, after which gmsh is taken to hang; a mesh takes one or two [s].
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Mesher(seconds=60.0)
+    Mesher(seconds=60.0)
     """
 
     command: str | None = None

@@ -39,6 +39,12 @@ class PredictionOptions(SolidOptions):
     Raises
     ------
     InputError : a value that can not be used, with what is allowed.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.PredictionOptions(law="wound").title
+    'neo-hookean, ν = 0.5, chambers wound'
     """
 
     law: str = "neo-hookean"

@@ -40,6 +40,18 @@ class Prediction(BesideBeam):
     rays, places : through the combinations; each combination's ray and load, None without pressure.
     results : of every ray on the standard mesh; on the coarse one of the principal rays and of
         those that decide the verdict.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> without = femcheck.PredictionOptions(mesher=femcheck.Mesher("no-such-gmsh"))
+    >>> found = femcheck.predict_design(subject, Path("predicted"), without)
+    >>> found.has_answers
+    False
     """
 
     subject: Subject

@@ -63,6 +63,21 @@ def predict_design(
     Raises
     ------
     InputError : `out` holds something else, or the material contradicts the design's moduli.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> low = subject.design.model_copy(update={"pressures": (0.0, 1.0, 2.0)})
+    >>> quick = femcheck.PredictionOptions(
+    ...     poisson_ratio=0.4, layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> found = femcheck.predict_design(femcheck.Subject("low", low), Path("predicted"), quick)
+    >>> found.unanswered
+    0
     """
     law = options.law_for(subject.design.actuator)
     with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
