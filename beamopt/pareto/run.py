@@ -65,6 +65,7 @@ def find_front(
         there has more generations than are asked for; or another process is writing to it.
     ImportError : pymoo is not installed.
     """
+    scene.check_memory("population", population, population)
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()
     judge = scene.judge(target)
