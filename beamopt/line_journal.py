@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from beamopt.errors import InputError
 from beamopt.folder import differences
+from beamopt.input_file import check_regular
 
 __all__ = ["LineJournal", "with_digest", "without_digest"]
 
@@ -66,6 +67,8 @@ class LineJournal:
         self.kind = kind
         self.entries: list[dict[str, Any]] = []
         self.digests = True
+        if path.exists():
+            check_regular(path, None)
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         whole = [line for line in lines if line.endswith(b"\n")]
         if not whole:

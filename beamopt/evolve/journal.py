@@ -19,6 +19,7 @@ from weakref import WeakSet
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
+from beamopt.input_file import check_regular
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import with_digest, without_digest
 from beamopt.section.feature_points import FeaturePoints
@@ -59,6 +60,8 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        if path.exists():
+            check_regular(path, None)  # opening a pipe would wait; a journal may be of any size
         self._stream = path.open("ab")
         _OPEN.add(self)
         try:
