@@ -18,6 +18,7 @@ from types import TracebackType
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.files import naming, refuse_link
+from beamopt.input_file import check_regular
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import with_digest, without_digest
 from beamopt.section.feature_points import FeaturePoints
@@ -44,6 +45,8 @@ class Journal:
     def __init__(self, path: Path) -> None:
         self.path = path
         refuse_link(path)
+        if path.exists():
+            check_regular(path, None)  # opening a pipe would wait; a journal may be of any size
         self._stream = path.open("ab")
         try:
             self._lines = self._whole_lines()
