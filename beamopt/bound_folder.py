@@ -31,7 +31,7 @@ OF_RESPONSE = ("ideal.csv", "bound.svg", "bound.png")
 FILES = (*OF_RESPONSE, "timing.csv", "provenance.json")
 SCHEMA = "beamopt-bound/1"
 # those of earlier versions had no schema
-KIND = FolderKind("a bound", MARKER, ('{\n "schema": "beamopt-bound/', '{\n "scene": "'))
+KIND = FolderKind("a bound", MARKER, ('{"schema":"beamopt-bound/', '{"scene":"'))
 HEADER = "p1,p2,p3,x,y,z,target_x,target_y,target_z,weight,distance_mm"
 
 

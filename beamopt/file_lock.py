@@ -12,7 +12,7 @@ from typing import BinaryIO
 
 __all__ = ["HeldElsewhereError", "is_free", "locked"]
 
-PATIENCE = 2.0  # s; a process that was just killed may still be letting go
+PATIENCE = 2.0  # s
 
 _HELD: list[BinaryIO] = []
 
@@ -32,18 +32,20 @@ if hasattr(os, "register_at_fork"):
 
 
 @contextmanager
-def locked(path: Path) -> Iterator[BinaryIO]:
+def locked(path: Path, patience: float | None = None) -> Iterator[BinaryIO]:
     """Keep every other process from `locked` of the same file, where the system can.
 
     The file is made if it is not there, and else left as it is. Who holds the lock may write to
     the stream, and may delete the file.
+
+    patience : time to wait for it [s]; a process that was just killed may still be letting go.
 
     Raises
     ------
     HeldElsewhereError : another process holds it.
     OSError : the file is a link, or can not be made.
     """
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + (PATIENCE if patience is None else patience)
     while True:
         stream = os.fdopen(os.open(path, _FLAGS, 0o666), "r+b", buffering=0)
         _HELD.append(stream)

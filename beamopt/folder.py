@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Collection, Iterator
@@ -29,16 +30,21 @@ __all__ = [
 LOCK = ".beamopt.lock"
 """File that a command has in its folder while it writes there; a kill leaves it."""
 
+HEAD = 80  # bytes of a marker, which are enough to tell it
+
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
+"""Errors that another folder on the same disk would not mend."""
 
 
 @dataclass(frozen=True, slots=True)
 class FolderKind:
     """What tells the folders of one command from all others.
 
-    name : of the command. marker : a file that each of them has once the command has begun, or,
-    where it can not go on, once it is done.
-    begins : how the marker begins; a text for each version.
+    name : of the command. marker : a file, or a pattern of files, that each of them has once the
+    command has begun, or, where it can not go on, once it is done.
+    begins : how the marker begins, white space left out; a text for each version.
     goes_on : whether the command can go on with one.
     """
 
@@ -49,23 +55,26 @@ class FolderKind:
 
     def is_of(self, folder: Path) -> bool:
         """Whether a folder has the marker; a kill may have left only a part of its beginning."""
+        return any(self._marks(file) for file in folder.glob(self.marker) if file.is_file())
+
+    def _marks(self, file: Path) -> bool:
         texts = [text.encode() for text in self.begins]
-        try:
-            with (folder / self.marker).open("rb") as stream:
-                head = stream.read(max(map(len, texts)))
-        except FileNotFoundError:
-            return False
+        with file.open("rb") as stream:
+            head = b"".join(stream.read(HEAD).split())
         return any(head.startswith(text) or text.startswith(head) for text in texts)
 
 
 @contextmanager
-def claimed(path: Path, kind: FolderKind, *, resume: bool) -> Iterator[None]:
+def claimed(
+    path: Path, kind: FolderKind, *, resume: bool, patience: float | None = None
+) -> Iterator[None]:
     """Make a folder, or take an empty one or one of the same kind; lock it while it is written.
 
     A folder is of a kind by its marker, or by the lock file of a command that was killed in it. In
     such a folder files under the names that the command writes are the command's.
 
     resume : whether the folder may hold anything.
+    patience : time to wait for another process that writes there [s]; short if left out.
 
     Raises
     ------
@@ -74,30 +83,41 @@ def claimed(path: Path, kind: FolderKind, *, resume: bool) -> Iterator[None]:
     """
     with ExitStack() as held:
         try:
+            is_new = not path.exists()
             path.mkdir(parents=True, exist_ok=True)
             _check(path, kind, resume)  # before there is a lock file in it
-            lock = held.enter_context(locked(path / LOCK))
+            lock = held.enter_context(locked(path / LOCK, patience))
             _check(path, kind, resume)  # what another process wrote meanwhile
             _say(lock, kind.name)
         except HeldElsewhereError:
             said = "another process is writing to this folder"
             raise InputError(path, "", None, said) from None
         except OSError as error:
+            if error.errno in FULL:
+                raise
             said = f"{(error.strerror or 'can not be made').lower()}; name a folder to write to"
             raise InputError(path, "", None, said) from None
         clear_scratch()
-        owner, is_done = os.getpid(), False
+        owner = os.getpid()
         try:
             yield
-            is_done = True
-        finally:
-            if os.getpid() == owner and (is_done or not _is_unfinished(path, kind)):
-                (path / LOCK).unlink(missing_ok=True)
+        except BaseException:
+            if os.getpid() == owner and path.is_dir():
+                _leave(path, kind, is_new=is_new)
+            raise
+        if os.getpid() == owner:
+            (path / LOCK).unlink(missing_ok=True)
 
 
-def _is_unfinished(path: Path, kind: FolderKind) -> bool:
-    """Whether a folder holds files that only its lock file tells from another's."""
-    return path.is_dir() and bool(_names(path)) and not kind.is_of(path)
+def _leave(path: Path, kind: FolderKind, *, is_new: bool) -> None:
+    """Delete the lock file after an error, unless it alone tells whose the files are.
+
+    is_new : whether the folder was made for the claim; it is deleted if nothing is in it.
+    """
+    if not _names(path) or kind.is_of(path):
+        (path / LOCK).unlink(missing_ok=True)
+    if is_new and not any(path.iterdir()):
+        path.rmdir()
 
 
 def _say(lock: BinaryIO, name: str) -> None:
@@ -111,16 +131,24 @@ def _check(path: Path, kind: FolderKind, resume: bool) -> None:
     names = _names(path)
     for name in (*names, LOCK):
         refuse_link(path / name)
+        _refuse_special(path / name)
     if not names:
         return
     is_done, is_cut = kind.is_of(path), _was_cut(path, kind)
     if not (is_done or is_cut):
-        said = f"holds files, but no {kind.marker} of {kind.name}: nothing to go on with"
-        raise InputError(path, "", None, f"{said}; name another folder")
+        said = f"holds files but no {kind.marker} of {kind.name}; nothing to go on with"
+        said = said if resume else "holds files already"
+        raise InputError(path, "", None, f"{said}: name another folder")
     if kind.goes_on and not resume:
         raise InputError(path, "", None, "holds files already; --resume goes on with what is there")
     if not kind.goes_on and is_done:
-        raise InputError(path, "", None, "holds files already; name another folder")
+        raise InputError(path, "", None, "holds files already: name another folder")
+
+
+def _refuse_special(path: Path) -> None:
+    """Refuse pipes and devices, which opening could wait for, or act on."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise InputError(path, "", None, "must be a regular file or a folder")
 
 
 def _names(path: Path) -> list[str]:
@@ -130,10 +158,8 @@ def _names(path: Path) -> list[str]:
 
 
 def _was_cut(path: Path, kind: FolderKind) -> bool:
-    try:
-        return (path / LOCK).read_bytes() == kind.name.encode()
-    except FileNotFoundError:
-        return False
+    lock = path / LOCK
+    return lock.is_file() and lock.read_bytes() == kind.name.encode()
 
 
 def own_subfolder(path: Path) -> Path:

@@ -91,7 +91,7 @@ def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | Non
     ended = result.status is not StopReason.INTERRUPTED
     if not (result.scene.refine.finish and ended and result.verdict.status is Status.JUDGED):
         return result
-    points = result.history[-1].best_ever.points
+    points = result.last.best_ever.points
     try:
         found = refine_points(points, result.scene, result.target, callback)
     except KeyboardInterrupt:
@@ -100,9 +100,9 @@ def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | Non
 
 
 def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
-    last = ended.history[-1]
+    last = ended.last
     best, final = (_design(scene, one) for one in (last.best_ever, last.best))
-    return Optimisation(ended.status, scene, target, best, final, ended.history, ended.timing)
+    return Optimisation(ended.status, scene, target, best, final, last, ended.history, ended.timing)
 
 
 def _design(scene: Scene, one: Individual) -> Design:

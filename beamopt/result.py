@@ -15,6 +15,7 @@ from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.brief import Brief
 from beamopt.design import Design
 from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.history import History
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Judge, Verdict
 from beamopt.reach.reach import Reach
@@ -50,7 +51,8 @@ class Optimisation:
     scene, target : what was searched for.
     best : the design with the lowest L + R of all that were judged.
     final : the design with the lowest L + R in the last population, the paper's result.
-    history : one record a generation, the initial population first.
+    last : the last generation.
+    history : the numbers of every generation, the initial population first.
     timing : of the sections that were judged now.
     refinement : of the best design, where the scene asks for it and there was one.
     there : what became of a refinement that the run folder held already.
@@ -69,7 +71,8 @@ class Optimisation:
     target: Target
     best: Design
     final: Design
-    history: tuple[Generation, ...]
+    last: Generation
+    history: History
     timing: Timing
     refinement: Refinement | None = None
     there: EarlierRefinement = EarlierRefinement.NONE
@@ -89,7 +92,7 @@ class Optimisation:
     @property
     def verdict(self) -> Verdict:
         """Losses L, K, T of the best design."""
-        return self.history[-1].best_ever.verdict
+        return self.last.best_ever.verdict
 
     @property
     def rms_distance(self) -> float:
@@ -148,4 +151,4 @@ class Optimisation:
     @property
     def evaluations(self) -> int:
         """Sections judged."""
-        return self.history[-1].evaluations
+        return self.last.evaluations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from beamopt.evolve.algorithm import Generation
+from beamopt.evolve.history import GenerationNumbers
 from beamopt.files import csv_text, json_text, write_atomic, write_changed
 from beamopt.folder import FolderKind, claimed, clear_leftovers, differences
 from beamopt.input_file import read_bytes, read_json
@@ -185,7 +184,7 @@ class RunFolder:
         if result.verdict.status is not Status.JUDGED:
             return new
         new |= self._write("best.json", result.best.json())
-        if result.history[-1].best.verdict.status is Status.JUDGED:
+        if result.last.best.verdict.status is Status.JUDGED:
             new |= self._write("final.json", result.final.json())
         if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
             new |= self._write_tables(result)
@@ -208,9 +207,9 @@ class RunFolder:
         from beamopt.plot.style import save_figure
 
         title = design_title(result.best)
-        lowest = [record.best.verdict.L for record in result.history]
-        ever = [record.best_ever.verdict.L for record in result.history]
-        mean = np.array([np.mean(_losses(record)) for record in result.history])
+        lowest = [record.best_loss for record in result.history]
+        ever = [record.ever_loss for record in result.history]
+        mean = np.array([record.mean_loss for record in result.history])
         for name, figure in (
             ("best", design_figure(result.best, result.target, title)),
             ("convergence", convergence_figure(lowest, mean, ever, title)),
@@ -218,7 +217,7 @@ class RunFolder:
             save_figure(figure, self.path / f"{name}.svg", self.path / f"{name}.png")
 
 
-def history_csv(history: tuple[Generation, ...], with_rules: bool = False) -> str:
+def history_csv(history: Sequence[GenerationNumbers], with_rules: bool = False) -> str:
     """L [mm²] of each generation's population and of the best so far, with that one's K.
 
     With rules also its R [mm²], and how many candidates so far were not judged.
@@ -226,15 +225,9 @@ def history_csv(history: tuple[Generation, ...], with_rules: bool = False) -> st
     header = "generation,evaluations,lowest_L,mean_L,highest_L,lowest_T,best_ever_L,best_ever_K"
     header += ",best_ever_R,rejected" if with_rules else ""
     rows = []
-    for record in history:
-        losses = _losses(record)
-        lowest_T = min(one.verdict.T for one in record.population)
-        ever = record.best_ever.verdict
-        spread = (float(losses.min()), float(losses.mean()), float(losses.max()))
-        ruled = (ever.R, sum(record.rejected.values())) if with_rules else ()
-        rows.append((record.index, record.evaluations, *spread, lowest_T, ever.L, ever.K, *ruled))
+    for one in history:
+        spread = (one.lowest_loss, one.mean_loss, one.highest_loss, one.lowest_total)
+        ruled = (one.ever_rule_loss, one.rejected) if with_rules else ()
+        ever = (one.ever_loss, one.ever_neighbour_loss)
+        rows.append((one.generation, one.evaluations, *spread, *ever, *ruled))
     return csv_text(header, rows)
-
-
-def _losses(record: Generation) -> FloatArray:
-    return np.array([one.verdict.L for one in record.population])

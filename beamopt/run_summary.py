@@ -26,11 +26,11 @@ def summary(result: Optimisation) -> dict[str, Any]:
             "ended": result.status.name,
             "scene": result.scene.name,
             "seed": result.scene.search.seed,
-            "generations": result.history[-1].index,
+            "generations": result.last.index,
             "evaluations": result.evaluations,
             "best": _summary_of(result.verdict, result.target.aim)
             | {"islands": pieces.islands, "chambers": list(pieces.chambers)},
-            "final": _summary_of(result.history[-1].best.verdict, result.target.aim),
+            "final": _summary_of(result.last.best.verdict, result.target.aim),
             "warnings": list(result.target.warnings),
         }
         | {"bound": bound_summary(result.bound, result.verdict.L)}
@@ -45,9 +45,9 @@ def _making(result: Optimisation) -> dict[str, Any]:
     """What the rules for what can be made did; nothing without any."""
     if not result.scene.making.rules_set:
         return {}
-    counts = result.history[-1].rejected
+    counts = result.last.rejected
     rejected = {status.name: counts[status] for status in Status if status in counts}
-    best = result.history[-1].best_ever.verdict
+    best = result.last.best_ever.verdict
     weighted = {"best_R": best.R} if best.status is Status.JUDGED else {}
     return {"rejected": rejected, **weighted}
 

@@ -17,7 +17,7 @@ from beamopt.file_lock import HeldElsewhereError, locked
 from beamopt.folder import LOCK, FolderKind, claimed, clear_leftovers, own_subfolder
 from beamopt.scratch import clear_scratch, scratch_folder
 
-KIND = FolderKind("a test", "marker.json", ('{"schema": "test/',))
+KIND = FolderKind("a test", "marker.json", ('{"schema":"test/',))
 AT_ONCE = FolderKind("a chart", "provenance.json", ("{",), goes_on=False)
 
 CLAIM = """
@@ -78,8 +78,9 @@ def test_a_folder_is_made_and_left_without_a_lock(tmp_path: Path) -> None:
 @pytest.mark.parametrize("resume", [False, True])
 def test_a_marker_of_another_is_none(tmp_path: Path, content: str, *, resume: bool) -> None:
     (tmp_path / "marker.json").write_text(content)
-    with pytest.raises(InputError, match="nothing to go on with"):
+    with pytest.raises(InputError, match="holds files") as caught:
         claim_and_begin(tmp_path, resume=resume)
+    assert caught.value.where == str(tmp_path)
     assert names(tmp_path) == {"marker.json"}
     assert (tmp_path / "marker.json").read_text() == content
 
@@ -179,8 +180,9 @@ def test_what_can_not_go_on_begins_again_after_a_kill(tmp_path: Path) -> None:
 
 def test_an_error_leaves_the_folder_claimed(tmp_path: Path) -> None:
     """As a kill does, where nothing else says whose the files are."""
-    with pytest.raises(KeyboardInterrupt), claimed(tmp_path, AT_ONCE, resume=False):
-        raise KeyboardInterrupt
+    for folder in (tmp_path, tmp_path / "new"):
+        with pytest.raises(KeyboardInterrupt), claimed(folder, AT_ONCE, resume=False):
+            raise KeyboardInterrupt
     assert names(tmp_path) == set()
     with pytest.raises(FileExistsError), claimed(tmp_path, AT_ONCE, resume=False):
         [(tmp_path / "chart.csv").touch(exist_ok=False) for _ in range(2)]

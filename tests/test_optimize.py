@@ -63,7 +63,7 @@ def test_memory_and_folder_agree_for_any_executor(tmp_path: Path) -> None:
     plain = optimize(SCENE)
     with ThreadPoolExecutor(2) as executor:
         kept = optimize(SCENE, tmp_path / "run", executor=executor, workers=2, figures=False)
-    assert [r.best.verdict for r in plain.history] == [r.best.verdict for r in kept.history]
+    assert list(plain.history) == list(kept.history)
 
 
 def interrupted_at(index: int, folder: Path) -> StopReason:
@@ -255,14 +255,14 @@ def test_folders_with_something_else_are_left_alone(tmp_path: Path) -> None:
 def test_reasons_to_stop(overrides: list[str], reason: StopReason, generations: int) -> None:
     result = optimize(load_scene("random-section", overrides))
     assert result.status is reason
-    assert result.history[-1].index == generations
+    assert result.last.index == generations
 
 
 def test_a_sector_and_few_points_can_be_searched() -> None:
     keys = ["grid.start=10", "grid.stop=200", "section.feature_points=4", "search.generations=15"]
     ranged = [*keys, "search.recombination=range", "search.mutation=weighted"]
     result = optimize(load_scene("random-section", ranged))
-    assert result.history[-1].index == 15
+    assert result.last.index == 15
     assert isinstance(result.scene, Scene)
 
 
@@ -301,4 +301,4 @@ def test_a_time_budget_goes_on_where_the_last_one_ended(tmp_path: Path) -> None:
         load_scene("hand-drawn-section", keys), tmp_path / "run", resume=True, figures=False
     )
     assert result.status is StopReason.SECONDS
-    assert result.history[-1].index == 6
+    assert result.last.index == 6

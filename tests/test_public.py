@@ -135,7 +135,7 @@ def instances() -> dict[str, object]:
     found = beamopt.optimize(scene)
     small = ["search.generations=0", "refine.flips=100", "refine.rounds=1", "refine.steps=1"]
     quick = beamopt.load_scene("random-section", small)
-    last = found.history[-1]
+    last = found.last
     verdict = beamopt.Verdict(1 / 3, 2 / 3)
     run = beamopt.Plan().runs()[0]
     nan = np.full((27, 3), np.nan)

@@ -28,6 +28,11 @@ class BoundStatus(Enum):
     NOT_AN_ARC = "no bound: the tips of this scene's rod do not depend on a response matrix alone"
     NO_ROWS = "no bound: the target names no tips at given pressures"
 
+    @property
+    def is_bound(self) -> bool:
+        """True if L has a proven bound, whatever more work would add to it."""
+        return self in (BoundStatus.BOUNDED, BoundStatus.WORK_LIMIT)
+
 
 @dataclass(frozen=True, eq=False)
 class Certificate:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -142,7 +143,7 @@ def _raised(
         columns += [[3 * k, 3 * k + 1, 3 * k + 2, 3 * count + k]] * len(strains)
         limits += parts.sums[k].at(strains).tolist()
     places = np.repeat(np.arange(len(limits)), 4), np.ravel(columns)
-    rows = csr_array((np.ravel(values), places), shape=(len(limits), 4 * count))
+    rows: Any = csr_array((np.ravel(values), places), shape=(len(limits), 4 * count))
     coupled = np.zeros((9, 4 * count))
     scaled = parts.highest / np.abs(parts.highest).max()
     for i in range(3):

@@ -19,6 +19,7 @@ __all__ = ["RingBound", "ring_bound"]
 SEED = 0x21B
 DIRECTIONS, MIXTURES = 40, 4  # random ones: of the first cuts, and starts within the ring
 MOST_ROUNDS = 60
+RESIDUALS = 4  # work of residuals with their derivatives, by that of their tips
 KEPT = 30  # cuts of a round
 AGREE = 1e-3  # share of the outer value by which the inner one may be above it
 STUCK = 1e-10  # a cut so shallow changes nothing
@@ -77,7 +78,9 @@ def ring_bound(
     enough = NEAR_ENOUGH * wanted.length**2 * float(wanted.weights.sum())
     cuts, starts = search.beginning()
     best, inner, outside, corners = starts[0], np.inf, None, np.array(starts)
-    for rounds in range(1, MOST_ROUNDS + 1):
+    rounds = 0
+    while rounds < MOST_ROUNDS:
+        rounds += 1
         tried = [best, *starts] if outside is None else [best, outside]
         outside, outer = search.lowest(cuts, tried)
         near = nearest_point(search.support, outside, np.vstack([best, corners]))
@@ -149,7 +152,7 @@ class _Search:
         if not is_stiff(self.ring, point * self.ring.reach):
             return None
         wanted = self.wanted
-        self.work.spend("ring", len(wanted.tips) + ROUND)
+        self.work.spend("ring", RESIDUALS * (len(wanted.tips) + ROUND))
         matrix, slopes = self.response(point)
         root = np.sqrt(wanted.weights)[:, None]
         away = root * (wanted.tips_of(matrix) - wanted.tips)

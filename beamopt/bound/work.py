@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 __all__ = ["MOST_WORK", "Progress", "Work"]
 
-MOST_WORK = 10**9
+MOST_WORK = 5 * 10**8
 """Tips of arcs that a bound computes at most, unless more is asked for: a minute or two. The
 bundled scenes take at most a million."""
 

@@ -16,7 +16,7 @@ from beamopt.chart.measure import (
     reference_of,
 )
 from beamopt.chart.methods import all_methods
-from beamopt.chart.workload import workload_of
+from beamopt.chart.workload import Workload, workload_of
 from beamopt.files import csv_text, json_text, write_atomic
 from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.plot.error_chart import Line, error_figure
@@ -91,22 +91,31 @@ def run_chart(
     InputError : `out` holds files, or can not be written; the scene has nothing to solve.
     """
     load, limits = workload_of(scene, seed), limits or Limits()
-    reference = reference_of(load)
+    chosen = all_methods(parents_on_grid()) if methods is None else methods
     with claimed(out, KIND, resume=False):
-        rows: list[Measured] = []
-        chosen = all_methods(parents_on_grid()) if methods is None else methods
-        for measured in (
-            measure_rungs(load, reference, limits),
-            *(measure_method(method, load, reference, limits) for method in chosen),
-        ):
-            for row in measured:
-                rows.append(row)
-                if callback is not None:
-                    callback(row)
-        tolerance = load.model.tolerance
-        chart = Chart(scene.name, tuple(rows), tolerance, reference.uncertainty(rows))
+        chart = _measured(scene.name, load, chosen, limits, callback)
         _write(chart, out, seed)
     return chart
+
+
+def _measured(
+    name: str,
+    load: Workload,
+    methods: Sequence[Method],
+    limits: Limits,
+    callback: Callable[[Measured], None] | None,
+) -> Chart:
+    reference = reference_of(load)
+    rows: list[Measured] = []
+    for measured in (
+        measure_rungs(load, reference, limits),
+        *(measure_method(method, load, reference, limits) for method in methods),
+    ):
+        for row in measured:
+            rows.append(row)
+            if callback is not None:
+                callback(row)
+    return Chart(name, tuple(rows), load.model.tolerance, reference.uncertainty(rows))
 
 
 def _write(chart: Chart, out: Path, seed: int | None) -> None:

@@ -17,7 +17,7 @@ from beamopt.study.work import Tasks, check_none_lost, solve_all
 __all__ = ["run_stability"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema": "beamopt-stability/',))
+KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema":"beamopt-stability/',))
 
 
 def run_stability(

@@ -180,11 +180,14 @@ def show(
         Path | None,
         typer.Option(help="Figure to write (.png, .svg, .pdf); NAME.png here if left out."),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no such figure.")
+    ] = False,
 ) -> None:
     """Draw a design's section beside its workspace, and the section in the terminal."""
     from beamopt.cli.show import show_command
 
-    show_command(design, out)
+    show_command(design, out, force=force)
 
 
 @app.command()
@@ -216,12 +219,15 @@ def bound(
     out: Annotated[
         Path | None, typer.Option(help="Folder for numbers, ideal tips and figures.")
     ] = None,
+    work: Annotated[
+        float | None, typer.Option(help="Most tips to compute [millions]; left out: 500.")
+    ] = None,
     overrides: Overrides = None,
 ) -> None:
     """Say how low the loss L can be at all, whatever the section."""
     from beamopt.cli.bound import bound_command
 
-    bound_command(subject, out, overrides or [])
+    bound_command(subject, out, work, overrides or [])
 
 
 @app.command()

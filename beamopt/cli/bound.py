@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+import math
+from collections.abc import Sequence
+from contextlib import nullcontext
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from beamopt.arrays import FloatArray
-from beamopt.bound.certificate import BoundStatus, Certificate, Progress, certificate
+from beamopt.bound.certificate import BoundStatus, Certificate, certificate
 from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
+from beamopt.bound.work import MOST_WORK
 from beamopt.bound_folder import claimed_for_bound, write_bound
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console
+from beamopt.cli.progress import console, work_progress
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.input_file import parse_toml
@@ -46,21 +47,26 @@ class LengthSource(Enum):
     DEFAULT = "the default: no tip without pressure says it; --set actuator.length"
 
 
-def bound_command(subject: str, out: Path | None, overrides: Sequence[str]) -> None:
-    """Say how low L can be, whatever the section, and write it where asked."""
+def bound_command(
+    subject: str, out: Path | None, work: float | None, overrides: Sequence[str]
+) -> None:
+    """Say how low L can be, whatever the section, and write it where asked.
+
+    work : most tips to compute [millions].
+    """
+    if work is not None and not 0 < work < math.inf:
+        raise InputError("--work", "", work, "a finite number of million tips above 0")
     scene, notes, assumed = _scene_of(subject, overrides)
     target = scene.load_target()
     with nullcontext() if out is None else claimed_for_bound(out, scene):
-        with _spinner() as say:
-            found = certificate(scene, target, say)
+        with work_progress() as callback:
+            found = certificate(scene, target, callback, MOST_WORK if work is None else 1e6 * work)
         if out is not None:
             write_bound(out, scene, target, found, assumed)
     for note in (*notes, *target.warnings):
         console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
-    end_with(
-        ExitCode.HOLDS if found.status is BoundStatus.BOUNDED else ExitCode.NOT_COMPUTED,
-    )
+    end_with(ExitCode.HOLDS if found.status.is_bound else ExitCode.NOT_COMPUTED)
 
 
 def _scene_of(
@@ -168,17 +174,6 @@ def _with(scene: Scene, overrides: Sequence[str]) -> Scene:
     return parse(Scene, data, "--set")
 
 
-@contextmanager
-def _spinner() -> Iterator[Progress]:
-    """What goes on, on a terminal's standard error; it leaves nothing behind."""
-    terminal = Console(stderr=True, highlight=False)
-    if not terminal.is_terminal:
-        yield lambda part, said: None
-        return
-    with terminal.status("response") as status:
-        yield lambda part, said: status.update(f"{part}: {said}")
-
-
 def _report(scene: Scene, target: Target, found: Certificate, out: Path | None) -> None:
     lines: list[tuple[str, str]]
     wanted, response = found.wanted, found.response
@@ -192,6 +187,8 @@ def _report(scene: Scene, target: Target, found: Certificate, out: Path | None) 
             lines += _of_ring(found.ring, wanted)
         if target.aim.turns or target.aim.has_paths:
             lines.append(("note", "of the tips alone; what directions and paths add is left out"))
+        if found.status is BoundStatus.WORK_LIMIT:
+            lines.append(("ended", f"{found.status.value}: --work"))
         lines.append(("time", _times(found)))
     if out is not None:
         figures = "" if response is None else "bound.png, ideal.csv, "

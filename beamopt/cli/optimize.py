@@ -103,7 +103,7 @@ def _report(result: Optimisation, folder: Path) -> None:
 
 def _found(result: Optimisation) -> list[tuple[str, str]]:
     verdict, pieces = result.verdict, result.best.section.pieces
-    final = result.history[-1].best.verdict.L
+    final = result.last.best.verdict.L
     chambers = " + ".join(str(count) for count in pieces.chambers)
     return [
         ("L", f"{verdict.L:.6g} mm²   (lowest in the last population: {final:.6g})"),
@@ -136,7 +136,7 @@ def _total(result: Optimisation) -> list[tuple[str, str]]:
 
 def _rejected(result: Optimisation) -> list[tuple[str, str]]:
     """How many candidates were not judged, by reason; nothing where all were."""
-    counts = result.history[-1].rejected
+    counts = result.last.rejected
     said = "; ".join(f"{counts[one]}: {one.value}" for one in Status if one in counts)
     return [("not judged", said)] if said else []
 

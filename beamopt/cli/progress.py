@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-__all__ = ["console", "progress_bar"]
+__all__ = ["console", "progress_bar", "work_progress"]
+
+EVERY = 10.0  # s between two lines where there is no terminal
 
 console = Console(highlight=False)
 
@@ -24,3 +30,31 @@ def progress_bar(unit: str) -> Progress:
         disable=not terminal.is_terminal,
         transient=True,
     )
+
+
+@contextmanager
+def work_progress() -> Iterator[Callable[[str, float], None]]:
+    """A function to call with the part of some work and the share of it that is spent.
+
+    It shows the time since the part began, and how much may be left, on standard error: on a
+    terminal in one line that leaves nothing behind, elsewhere in a line every ten seconds.
+    """
+    terminal = Console(stderr=True, highlight=False)
+    status = terminal.status("…") if terminal.is_terminal else None
+    began: dict[str, float] = {}
+    last = time.monotonic()
+
+    def show(part: str, share: float) -> None:
+        nonlocal last
+        now = time.monotonic()
+        seconds = now - began.setdefault(part, now)
+        left = f", at most {seconds * (1 - share) / share:.0f} s left" if share > 0 else ""
+        said = f"{part}: {seconds:.0f} s{left}"
+        if status is not None:
+            status.update(said)
+        elif now - last >= EVERY:
+            last = now
+            terminal.print(said, soft_wrap=True, markup=False)
+
+    with status or nullcontext():
+        yield show

@@ -17,7 +17,7 @@ from types import TracebackType
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.files import refuse_link
+from beamopt.files import naming, refuse_link
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import with_digest, without_digest
 from beamopt.section.feature_points import FeaturePoints
@@ -66,8 +66,9 @@ class Journal:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        os.fsync(self._stream.fileno())
-        self.close()
+        with naming(self.path):
+            os.fsync(self._stream.fileno())
+            self.close()
 
     def close(self) -> None:
         """Let go of the file."""
@@ -125,8 +126,9 @@ class Journal:
             return ""
 
     def _append(self, line: bytes) -> None:
-        self._stream.write(line)
-        self._stream.flush()
+        with naming(self.path):
+            self._stream.write(line)
+            self._stream.flush()
 
 
 def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:

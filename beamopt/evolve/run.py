@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+from beamopt.evolve.history import History
 from beamopt.evolve.improvement import Improvement
 from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason, why_stop
@@ -24,12 +25,14 @@ __all__ = ["Ended", "run"]
 class Ended:
     """How a search ended.
 
-    status : why it stopped. history : one record a generation, the initial population first.
+    status : why it stopped. last : the last generation.
+    history : the numbers of every generation, the initial population first.
     timing : of what was judged now.
     """
 
     status: StopReason
-    history: tuple[Generation, ...]
+    last: Generation
+    history: History
     timing: Timing
 
 
@@ -71,12 +74,15 @@ def run(
     """
     improvement = Improvement(judge, scene) if scene.search.improved_share > 0 else None
     search = GeneticAlgorithm(scene, improvement)
-    history: list[Generation] = []
+    history = History()
+    last: Generation | None = None
 
     def told(record: Generation | None, seconds: float) -> StopReason | None:
+        nonlocal last
         if record is None:
             return None
-        history.append(record)
+        last = record
+        history.add(record)
         if callback is not None:
             callback(record)
         return why_stop(scene, search, history, seconds)
@@ -84,7 +90,7 @@ def run(
     reason: StopReason | None = None
     for verdicts in journal.replay(search) if journal is not None else ():
         if journal is not None and reason is not None:
-            raise _beyond(journal, scene, reason, history)
+            raise _beyond(journal, scene, reason, len(history) - 1)
         # what was judged already takes none of the time that this call may take
         reason = told(search.tell(verdicts), 0.0)
     if ready is not None:
@@ -99,14 +105,15 @@ def run(
                 journal.write(search, verdicts)
             reason = told(search.tell(verdicts), time.perf_counter() - asking)
     except KeyboardInterrupt:
-        if not history:
+        if last is None:
             raise
+    assert last is not None
     status = reason or StopReason.INTERRUPTED
-    if reason is not None and history[-1].best_ever.verdict.status is not Status.JUDGED:
+    if reason is not None and last.best_ever.verdict.status is not Status.JUDGED:
         status = StopReason.NOTHING
     judged = search.evaluations - before
     seconds = time.perf_counter() - asking if judged else 0.0
-    return Ended(status, tuple(history), Timing(seconds, judged, compiling))
+    return Ended(status, last, history, Timing(seconds, judged, compiling))
 
 
 def _compiling(judge: Judge, scene: Scene, search: GeneticAlgorithm) -> float:
@@ -133,15 +140,13 @@ KEYS = {
 """The key that a search stops for; a time is counted anew."""
 
 
-def _beyond(
-    journal: Journal, scene: Scene, reason: StopReason, history: Sequence[Generation]
-) -> InputError:
+def _beyond(journal: Journal, scene: Scene, reason: StopReason, generation: int) -> InputError:
     """The error of a search that was given less than it had before."""
     key = KEYS[reason]
     table, _, name = key.partition(".")
     value = getattr(getattr(scene, table), name)
     said = (
         f"the search there ended after generation {journal.last_generation}; this would end it "
-        f"after {history[-1].index}: ask for as much, or name another folder"
+        f"after {generation}: ask for as much, or name another folder"
     )
     return InputError(journal.path, key, value, said)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import Enum
 
-from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
+from beamopt.evolve.algorithm import GeneticAlgorithm
+from beamopt.evolve.history import GenerationNumbers
 from beamopt.scene import Scene
 
 __all__ = ["StopReason", "why_stop"]
@@ -36,24 +37,24 @@ class StopReason(Enum):
 
 
 def why_stop(
-    scene: Scene, search: GeneticAlgorithm, history: Sequence[Generation], seconds: float
+    scene: Scene, search: GeneticAlgorithm, history: Sequence[GenerationNumbers], seconds: float
 ) -> StopReason | None:
     """The reason to stop after the last generation in `history`, or None to go on.
 
     seconds : time that judging anew has taken so far.
     """
     stop, last = scene.stop, history[-1]
-    if stop.loss is not None and stop.loss >= last.best_ever.verdict.ruled_loss:
+    if stop.loss is not None and stop.loss >= last.ever_loss + last.ever_rule_loss:
         return StopReason.LOSS
-    if last.index >= scene.search.generations:
+    if last.generation >= scene.search.generations:
         return StopReason.GENERATIONS
     if stop.evaluations is not None:
         after = last.evaluations + search.next_evaluations
         if after > stop.evaluations:
             return StopReason.EVALUATIONS
-    if stop.stall is not None and last.index >= stop.stall:
-        before = history[-1 - stop.stall].best_ever.verdict.ruled_loss
-        if before <= last.best_ever.verdict.ruled_loss:
+    if stop.stall is not None and last.generation >= stop.stall:
+        before = history[-1 - stop.stall]
+        if before.ever_loss + before.ever_rule_loss <= last.ever_loss + last.ever_rule_loss:
             return StopReason.STALL
     if stop.seconds is not None and seconds > stop.seconds:
         return StopReason.SECONDS

@@ -21,7 +21,7 @@ from beamopt.timing import write_times
 
 __all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
 
-KIND = FolderKind("a front", "journal.jsonl", ('{"schema": "beamopt-pareto/',))
+KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
 DESIGN = re.compile(r"\bfront-\d{3,}\.json\b")
 NAMES = (
@@ -112,9 +112,8 @@ def _history_csv(front: Front) -> str:
     lowest = [f"lowest_{name}" for name in front.objectives]
     rows = []
     for record in front.history:
-        values = [one.score.values(front.objectives) for one in record.front]
-        least = [min(column) for column in zip(*values, strict=True)] or [None] * len(lowest)
-        rows.append((record.index, record.evaluations, len(record.front), *least))
+        least = record.values.min(axis=0).tolist() if len(record.values) else [None] * len(lowest)
+        rows.append((record.index, record.evaluations, len(record.values), *least))
     return csv_text(",".join(["generation", "evaluations", "front", *lowest]), rows)
 
 

@@ -14,7 +14,7 @@ from beamopt.bound.certificate import Certificate
 from beamopt.brief import Brief
 from beamopt.evolve.stopping import StopReason
 from beamopt.judge import Status
-from beamopt.pareto.search import Candidate, FrontRecord, front_values
+from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
 from beamopt.scene import Scene
 from beamopt.timing import Timing
@@ -34,7 +34,8 @@ class Front:
     """The outcome of `find_front`.
 
     status : why it stopped. scene, objectives, population : what was searched for, and how.
-    history : one record a generation, the initial population first.
+    designs : the front, by the first objective, lowest first; each beats no other.
+    history : the numbers of every generation, the initial population first.
     seen : (n, objectives) values of all that were judged.
     rejected : how many could not be judged or may not be made, by reason.
     timing : of the sections that were judged now.
@@ -53,7 +54,8 @@ class Front:
     scene: Scene
     objectives: tuple[str, ...]
     population: int
-    history: tuple[FrontRecord, ...]
+    designs: tuple[Candidate, ...]
+    history: tuple[FrontNumbers, ...]
     seen: FloatArray
     rejected: Mapping[Status, int]
     timing: Timing
@@ -71,11 +73,6 @@ class Front:
     def seconds(self) -> float:
         """Time that the search took, without compiling [s]."""
         return self.timing.seconds
-
-    @property
-    def designs(self) -> tuple[Candidate, ...]:
-        """The front, by the first objective, lowest first; each beats no other."""
-        return self.history[-1].front
 
     @property
     def values(self) -> FloatArray:

@@ -25,6 +25,8 @@ NO_MATTER = {"stop", "refine", "description"}  # parts of a scene that change no
 class FrontJournal:
     """A journal of scores, open for going on; genotypes follow from the scene.
 
+    last_generation : that the last line of the file was of when it was opened; -1 without any.
+
     Raises
     ------
     InputError : what is there is a journal of another question, or damaged.
@@ -45,10 +47,13 @@ class FrontJournal:
         }
         self.path = path
         self._lines = LineJournal(path, asked, "search for a front")
+        self.last_generation = len(self._lines.entries) - 1
 
     def replay(self, search: FrontSearch) -> Iterator[list[Score]]:
         """The scores on record, each generation checked against what `search` asks for now."""
-        for number, entry in enumerate(list(self._lines.entries), 2):
+        entries = list(self._lines.entries)
+        self._lines.entries.clear()  # a long search's would fill the memory
+        for number, entry in enumerate(entries, 2):
             asked, judged = search.ask(), entry.get("judged")
             if entry.get("generation") != search.generation or not isinstance(judged, list):
                 raise self._other(number)
@@ -61,16 +66,11 @@ class FrontJournal:
                 raise self._other(number)
             yield known
 
-    @property
-    def last_generation(self) -> int:
-        """The generation that the last line on record is of; -1 without any."""
-        return len(self._lines.entries) - 1
-
     def write(self, search: FrontSearch, scores: Sequence[Score]) -> None:
         """Append the scores of what `search` asks for; call it before telling them."""
         pairs = zip(search.ask(), scores, strict=True)
         judged = [_entry(points, score) for points, score in pairs]
-        self._lines.add({"generation": search.generation, "judged": judged})
+        self._lines.add({"generation": search.generation, "judged": judged}, keep=False)
 
     def _other(self, number: int) -> InputError:
         said = (

@@ -10,8 +10,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from beamopt.bound.certificate import quick_certificate
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
@@ -22,7 +20,7 @@ from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.scores import Score, scored
-from beamopt.pareto.search import FrontRecord, FrontSearch
+from beamopt.pareto.search import FrontNumbers, FrontRecord, FrontSearch, front_values
 from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.timing import Timing
@@ -84,12 +82,13 @@ def find_front(
             held.enter_context(claimed(folder, KIND, resume=resume))
             journal = FrontJournal(folder / KIND.marker, scene, objectives, population)
             _check_length(journal, scene)
-        history: list[FrontRecord] = []
+        history: list[FrontNumbers] = []
         judged = partial(scored, judge)
         evaluate = partial(in_parts, judged, executor=executor, workers=workers)
 
         def add(record: FrontRecord) -> None:
-            history.append(record)
+            values = front_values(record.front, objectives)
+            history.append(FrontNumbers(record.index, record.evaluations, values))
             if callback is not None:
                 callback(record)
 
@@ -97,14 +96,15 @@ def find_front(
         if folder is not None:
             begin_folder(folder, scene)
         done, timing = _run(search, scene, evaluate, journal, add)
-        ended = StopReason.GENERATIONS if history[-1].front else StopReason.NOTHING
+        ended = StopReason.GENERATIONS if search.front else StopReason.NOTHING
         front = Front(
             status=ended if done else StopReason.INTERRUPTED,
             scene=scene,
             objectives=tuple(objectives),
             population=population,
+            designs=search.front,
             history=tuple(history),
-            seen=np.array(search.seen).reshape(-1, len(objectives)),
+            seen=search.seen,
             rejected=dict(search.rejected),
             timing=timing,
             bound=quick_certificate(scene, target),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from beamopt.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.streams import Purpose, stream
 
-__all__ = ["Candidate", "FrontRecord", "FrontSearch", "front_values"]
+__all__ = ["Candidate", "FrontNumbers", "FrontRecord", "FrontSearch", "front_values"]
 
 LEAST = 1e-12  # mm²; a lower L is none
 
@@ -45,6 +46,19 @@ class FrontRecord:
     front: tuple[Candidate, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class FrontNumbers:
+    """The numbers of a generation, without genotypes.
+
+    index : 0 for the initial population. evaluations : sections judged so far.
+    values : (n, objectives) along the front of all that were judged so far.
+    """
+
+    index: int
+    evaluations: int
+    values: FloatArray
+
+
 class FrontSearch:
     """NSGA-II (Deb et al., 2002) on several objectives of a scene: ask, judge, tell.
 
@@ -65,7 +79,7 @@ class FrontSearch:
         self.generation = self.evaluations = 0
         self.rejected: Counter[Status] = Counter()
         self.front: tuple[Candidate, ...] = ()
-        self.seen: list[tuple[float, ...]] = []
+        self._seen = array("d")
         self._ask()
 
     def first(self) -> list[FeaturePoints]:
@@ -75,6 +89,11 @@ class FrontSearch:
             self._variation.initial(stream(seed, Purpose.INITIAL, 0, index))
             for index in range(self._size)
         ]
+
+    @property
+    def seen(self) -> FloatArray:
+        """(n, objectives) values of all that were judged."""
+        return np.array(self._seen).reshape(-1, len(self._objectives))
 
     def ask(self) -> tuple[FeaturePoints, ...]:
         """The candidates to be judged now; asking again gives the same ones."""
@@ -153,7 +172,7 @@ class FrontSearch:
         """Add to the front what belongs there, and to what was seen and rejected."""
         for one in judged:
             if one.score.judged:
-                self.seen.append(one.score.values(self._objectives))
+                self._seen.extend(one.score.values(self._objectives))
             else:
                 self.rejected[one.score.verdict.status] += 1
         everyone = [*self.front, *(one for one in judged if one.score.judged)]

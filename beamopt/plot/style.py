@@ -135,23 +135,29 @@ def count_generations(axes: Axes) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
 
 
-def save_figure(figure: Figure, *paths: Path) -> None:
-    """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes."""
-    contents = figure_bytes(figure, *(path.suffix.lower()[1:] for path in paths))
+def save_figure(figure: Figure, *paths: Path, made_by: str | None = None) -> None:
+    """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes.
+
+    made_by : what the file says that it was made by; matplotlib if left out.
+    """
+    endings = (path.suffix.lower()[1:] for path in paths)
+    contents = figure_bytes(figure, *endings, made_by=made_by)
     for path, content in zip(paths, contents, strict=True):
         write_atomic(path, content)
 
 
-def figure_bytes(figure: Figure, *endings: str) -> list[bytes]:
+def figure_bytes(figure: Figure, *endings: str, made_by: str | None = None) -> list[bytes]:
     """A figure as files of each ending (svg, png, pdf) hold it; the same one, the same bytes."""
     dateless: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    maker = {"png": "Software", "svg": "Creator", "pdf": "Creator"}
     contents = []
     with _our_settings():
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # laid out now, once for all endings
         for ending in endings:
             stream = io.BytesIO()
-            figure.savefig(stream, format=ending, dpi=150, metadata=dateless.get(ending, {}))
+            about = dateless.get(ending, {}) | ({maker[ending]: made_by} if made_by else {})
+            figure.savefig(stream, format=ending, dpi=150, metadata=about)
             contents.append(stream.getvalue())
     return contents
 

@@ -31,7 +31,7 @@ __all__ = ["run_study"]
 Callback = Callable[[Outcome, int, int], None]
 
 
-KIND = FolderKind("a study", "study.json", ('{\n "schema": "beamopt-study/',))
+KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
 class StudyFile(Model):
@@ -102,13 +102,13 @@ def run_one(run: Run, folder: Path) -> Outcome:
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
-    last, times = result.history[-1], read_times(own / "timing.csv")
+    last, times = result.last, read_times(own / "timing.csv")
     return Outcome(
         run,
         last.best.verdict,
         last.best_ever.verdict.L,
         result.evaluations,
-        tuple(record.best.verdict.L for record in result.history),
+        tuple(record.best_loss for record in result.history),
         times.get("search", math.nan),
         None
         if result.refinement is None

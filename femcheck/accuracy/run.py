@@ -26,7 +26,7 @@ from femcheck.models.reply import Model
 __all__ = ["beam_difference", "run_accuracy", "tips_csv"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema": "femcheck-accuracy/',))
+KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',))
 NAMES = (
     *(JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
     "provenance.json",

@@ -35,7 +35,7 @@ from femcheck.models.solid import SolidModel
 __all__ = ["Budget", "run_chart"]
 
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
-KIND = FolderKind("a chart", JOURNAL, ('{"schema": "femcheck-chart/',))
+KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
 NAMES = (
     *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
     *("chart.svg", "chart.png"),

@@ -24,7 +24,7 @@ PICTURES = (
     *("mesh.msh", "mesh.vtu", "picture.png", "picture.log"),
     *("paths.png", "paths.svg", "axis.png", "axis.svg"),  # of a prediction
 )
-KIND = FolderKind("a check", MARKER, ('{\n "schema": "femcheck/',))
+KIND = FolderKind("a check", MARKER, ('{"schema":"femcheck/',))
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
 
 

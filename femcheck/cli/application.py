@@ -255,15 +255,19 @@ def write_baselines(
             metavar="[DESIGN…]", help="Design files, or names of the package's; those if left out."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("reports/baseline"),
-    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
+    out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),
+    meshes: Annotated[
+        Path | None, typer.Option(help="Folder of small section meshes; that of --out if left out.")
+    ] = None,
     workers: Workers = 2,
-    force: Annotated[bool, typer.Option("--force", help="Write over baselines there.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over baselines, and other files in their place.")
+    ] = False,
 ) -> None:
     """Write what every rung says of designs, with tolerances from error estimates."""
     from femcheck.cli.regression import baseline_command
 
-    baseline_command(designs or [], out, meshes, workers, force=force)
+    baseline_command(designs or [], out, meshes or out, workers, force=force)
 
 
 @app.command(name="regress")
@@ -272,19 +276,22 @@ def hold_against_baselines(
         list[str] | None,
         typer.Argument(metavar="[DESIGN…]", help="Designs; all that have one if left out."),
     ] = None,
-    baseline: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path(
-        "reports/baseline"
-    ),
-    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
+    baseline: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),
+    meshes: Annotated[
+        Path | None, typer.Option(help="Folder of section meshes; that of --baseline if left out.")
+    ] = None,
     workers: Workers = 2,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Write all that moved.")
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no such table.")
+    ] = False,
 ) -> None:
     """Compute what baselines hold anew; ends with 1 and a table if anything moved."""
     from femcheck.cli.regression import regress_command
 
-    regress_command(designs or [], baseline, meshes, workers, out)
+    regress_command(designs or [], baseline, meshes or baseline, workers, out, force=force)
 
 
 def run(arguments: Sequence[str]) -> int:

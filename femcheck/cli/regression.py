@@ -13,7 +13,7 @@ from rich.table import Table
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.files import csv_text, write_atomic
+from beamopt.files import check_replaceable, csv_text, write_atomic
 from beamopt.provenance import thread_settings
 from femcheck.cli.verdicts import code_of
 from femcheck.continuation.ended import Ended
@@ -55,9 +55,17 @@ def baseline_command(
 
 
 def regress_command(
-    designs: list[str], baseline: Path, meshes: Path, workers: int, out: Path | None
+    designs: list[str],
+    baseline: Path,
+    meshes: Path,
+    workers: int,
+    out: Path | None,
+    *,
+    force: bool = False,
 ) -> None:
     """Compute what is held anew; end with 1 and a table if anything moved."""
+    if out is not None:
+        check_replaceable(out, HEADER, "femcheck regress", force=force)
     started = perf_counter()
     _say_threads(workers)
     with _Shown() as shown:

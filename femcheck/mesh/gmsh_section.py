@@ -17,6 +17,7 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.brief import Brief, changed_fields
+from beamopt.files import naming
 from beamopt.outline.outline import Outline
 from beamopt.scratch import scratch_folder
 from femcheck.mesh.geo import SectionSizes, geo_script
@@ -107,7 +108,8 @@ class Mesher:
             return MeshFailure(MeshProblem.NO_GMSH, self.command or "pip install gmsh")
         with scratch_folder() as folder:
             script, written = folder / "section.geo", folder / "section.msh"
-            script.write_text(geo_script(outline, sizes), encoding="utf-8")
+            with naming(script):
+                script.write_text(geo_script(outline, sizes), encoding="utf-8")
             arguments = [*command, "-2", "-v", "1", "-format", "msh41"]
             failure = _run([*arguments, "-o", str(written), str(script)], self.seconds)
             if failure is not None:

@@ -28,7 +28,7 @@ from femcheck.stability.work import Key, MapWork, Result
 __all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("a stability map", JOURNAL, ('{"schema": "femcheck-stability/',))
+KIND = FolderKind("a stability map", JOURNAL, ('{"schema":"femcheck-stability/',))
 WRITTEN = "written_with"  # what tables and figure were made with, which may be later
 NAMES = (
     *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 import beamopt
+from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.judge import Judge
 from beamopt.result import Optimisation
 from beamopt.rod.ladder import SectionValues
@@ -64,8 +65,10 @@ def _searched(name: str, generations: int) -> Optimisation:
 def _parts(result: Optimisation) -> Iterator[Measured]:
     """Each part on sections of first and last generation that have material and equilibrium."""
     judge = result.scene.judge(result.target)
-    ends = result.history[0], result.history[-1]
-    batch = [one.points for each in ends for one in each.population if np.isfinite(one.verdict.L)]
+    first = GeneticAlgorithm(result.scene).ask()
+    known = [*zip(first, judge(first), strict=True)]
+    known += [(one.points, one.verdict) for one in result.last.population]
+    batch = [points for points, verdict in known if np.isfinite(verdict.L)]
     measure = partial(phenotypes, judge.grid, batch, judge.wall_elements, judge.rules, True)
     measured = measure()
     torsion = partial(_torsion, judge, measured)

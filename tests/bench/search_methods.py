@@ -62,7 +62,7 @@ def refined(scene: Scene, judge: TapedJudge) -> None:
 def evolved_and_refined(scene: Scene, judge: TapedJudge) -> None:
     """The paper's search, then a refinement of the lowest L that it met; ends by itself."""
     ended = run(scene, judge)
-    _refine(scene, judge, ended.history[-1].best_ever.points)
+    _refine(scene, judge, ended.last.best_ever.points)
 
 
 def pymoo_ga(scene: Scene, judge: TapedJudge) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tests.hostile.server import CPU_SECONDS, MEMORY
+from tests.hostile.server import MEMORY
 
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -20,15 +20,13 @@ ONE_THREAD = dict.fromkeys(
 
 @dataclass(frozen=True)
 class Case:
-    """A command on hostile input.
+    """Commands on hostile input, one after another in the same folder.
 
-    make : writes its files to an empty folder. codes : how it may end.
+    make : writes files to an empty folder. codes : how each may end.
     settings : streams, environment, encoding and file_size; see `server`.
     """
 
-    name: str
-    program: str
-    arguments: list[str]
+    lines: list[list[str]]
     make: Callable[[Path], None]
     codes: tuple[int, ...] = (2,)
     settings: dict[str, Any] = field(default_factory=dict)
@@ -52,7 +50,7 @@ class Server:
         process = self._process
         assert process.stdin is not None
         assert process.stdout is not None
-        asked = {"program": case.program, "arguments": case.arguments, **case.settings}
+        asked = {"lines": case.lines, **case.settings}
         paths = {"place": str(place), "folder": str(folder)}
         process.stdin.write(json.dumps(asked | paths) + "\n")
         process.stdin.flush()
@@ -66,17 +64,16 @@ class Server:
 def held(folder: Path) -> dict[str, tuple[object, ...]]:
     """What a folder holds: names, kinds, times of change, bytes of regular files."""
     found: dict[str, tuple[object, ...]] = {}
-    for above, folders, files in os.walk(os.fsencode(folder)):
-        for name in (*folders, *files):
-            path = os.path.join(above, name)
-            state = os.lstat(path)
+    for above, folders, files in os.walk(folder):
+        for path in (Path(above) / name for name in (*folders, *files)):
+            state = path.lstat()
             content: object = ""
-            if os.path.islink(path):
-                content = os.readlink(path)
-            elif os.path.isfile(path) and state.st_size < 2**24:
-                content = Path(os.fsdecode(path)).read_bytes()
-            changed = 0 if os.path.isdir(path) else state.st_mtime_ns
-            found[os.fsdecode(path)] = (state.st_mode, state.st_size, changed, content)
+            if path.is_symlink():
+                content = path.readlink()
+            elif path.is_file() and state.st_size < 2**24:
+                content = path.read_bytes()
+            changed = 0 if path.is_dir() else state.st_mtime_ns
+            found[str(path)] = (state.st_mode, state.st_size, changed, content)
     return found
 
 
@@ -90,19 +87,22 @@ def check(case: Case, server: Server, place: Path) -> None:
     case.make(folder)
     before, other = held(folder), held(beside)
     found = server.run(case, place, folder)
-    said, wrong = found["stdout"], found["stderr"]
-    told = f"{found}"[:3000]
-    assert not found["hung"], told
-    assert "Traceback" not in wrong + said, wrong[-3000:]
-    assert found["code"] in case.codes, told
-    assert found["cpu"] < CPU_SECONDS, told
-    assert found["memory"] < MEMORY, told
-    assert held(beside) == other, told
+    assert not found["hung"], found
+    assert found["memory"] < MEMORY, found
+    assert held(beside) == other
+    for line, ended in zip(case.lines, found["lines"], strict=True):
+        _check_line(line, ended, case.codes)
     after = held(folder)
-    assert {name: after.get(name) for name in before} == before or found["code"] in (0, 1, 3), told
-    if found["code"] == 2 and wrong:
-        lines = [line for line in wrong.splitlines() if not line.startswith("note: ")]
-        assert len(lines) == 1, wrong
-        assert lines[0].startswith(f"{case.program}: "), wrong
-    if found["code"] == 2:
-        assert after.keys() == before.keys(), sorted(after.keys() - before.keys())
+    if all(ended["code"] == 2 for ended in found["lines"]):
+        changed = {name for name in {*before, *after} if after.get(name) != before.get(name)}
+        assert not changed, found
+
+
+def _check_line(line: list[str], ended: dict[str, Any], codes: tuple[int, ...]) -> None:
+    about = f"{' '.join(line)[:300]}: {f'{ended}'[-3000:]}"
+    assert "Traceback" not in ended["stderr"] + ended["stdout"], about
+    assert ended["code"] in codes, about
+    if ended["code"] == 2 and ended["stderr"]:
+        said = [one for one in ended["stderr"].splitlines() if not one.startswith("note: ")]
+        assert len(said) == 1, about
+        assert said[0].startswith(f"{line[0]}: "), about

@@ -93,4 +93,4 @@ def test_a_damaged_file(
         except (IndexError, UnicodeDecodeError):
             pytest.skip("no such thing in it")
 
-    check(Case(name, program, line.split(), make, (0, 1, 2, 3)), server, tmp_path)
+    check(Case([[program, *line.split()]], make, (0, 1, 2, 3)), server, tmp_path)

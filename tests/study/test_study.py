@@ -63,7 +63,7 @@ def test_initial_populations_are_shared(made) -> None:
 def test_a_run_of_the_study_is_an_ordinary_run(made) -> None:
     _, outcomes = made
     one = outcomes[17]
-    assert optimize(one.run.scene()).history[-1].best.verdict == one.final
+    assert optimize(one.run.scene()).last.best.verdict == one.final
 
 
 def test_best_and_worst_designs_have_their_losses(made) -> None:
