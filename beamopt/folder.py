@@ -158,10 +158,8 @@ def _names(path: Path) -> list[str]:
 
 
 def _was_cut(path: Path, kind: FolderKind) -> bool:
-    try:
-        return (path / LOCK).read_bytes() == kind.name.encode()
-    except FileNotFoundError:
-        return False
+    lock = path / LOCK
+    return lock.is_file() and lock.read_bytes() == kind.name.encode()
 
 
 def own_subfolder(path: Path) -> Path:

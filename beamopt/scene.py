@@ -93,7 +93,7 @@ class Scene(Model):
     """
 
     schema_: Literal["beamopt-scene/1"] = Field(
-        "beamopt-scene/1", alias="schema", description="version of this file's format"
+        default="beamopt-scene/1", alias="schema", description="version of this file's format"
     )
     name: str = quantity("scene", "a short name, for titles and folders")
     description: str = quantity("", "one sentence on what it shows")

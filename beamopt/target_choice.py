@@ -45,7 +45,7 @@ class TargetChoice(Model):
     seed: Count = quantity(0, 'seed of the random section, for kind "random"', low=0)
     file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
     direction_weight: Number | None = Field(
-        None,
+        default=None,
         description="of a squared difference of unit tangents, for kind \"points\"; (length/10)² "
         "if left out",
         ge=0,
