@@ -55,8 +55,9 @@ def copied(folder: Path) -> Path:
     package = folder / "beamopt"
     source = Path(str(beamopt.__file__)).parent
     (package / "section").mkdir(parents=True)
-    for name in ("__init__.py", "compiled.py", "section/__init__.py"):
-        shutil.copy(source / name, package / name)
+    shutil.copy(source / "compiled.py", package)
+    for name in ("__init__.py", "section/__init__.py"):
+        (package / name).touch()
     (package / "section" / "inner.py").write_text(INNER)
     (package / "section" / "outer.py").write_text(OUTER)
     return package

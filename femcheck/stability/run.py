@@ -110,6 +110,8 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
     path = out / JOURNAL
     if not path.exists():
         raise InputError(path, "", None, "no such file: there is no map to draw again")
+    if path.is_file() and path.stat().st_size == 0:  # a journal would begin in it
+        raise InputError(path, "", None, "is empty: there is no map to draw again")
     with claimed(out, KIND, resume=True):
         journal = Journal(path, axes)
         if not journal.results:
