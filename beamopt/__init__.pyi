@@ -53,6 +53,7 @@ from .study.plan import Plan as Plan
 from .study.plan import Run as Run
 from .study.run import run_study as run_study
 from .study.table import Outcome as Outcome
+from .study.table import StudyOutcomes as StudyOutcomes
 from .target import Target as Target
 from .target_choice import TargetChoice as TargetChoice
 from .workspace import Workspace as Workspace

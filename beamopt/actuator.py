@@ -36,7 +36,14 @@ def _incompressible(given: dict[str, Any]) -> float:
 
 
 class Actuator(Model):
-    """The extruded body and its material; without a shear modulus it has G = E/3."""
+    """The extruded body and its material; without a shear modulus it has G = E/3.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Actuator(youngs_modulus=60.0).shear_modulus
+    20.0
+    """
 
     length: Number = quantity(100.0, "undeformed length H", unit="mm", low=0.1, high=1e5)
     youngs_modulus: Number = quantity(300.0, "Young's modulus E", unit="kPa", low=5, high=50_000)
@@ -50,7 +57,15 @@ class Actuator(Model):
 
 
 class SegmentChoice(Model):
-    """A piece of the actuator; without `file` or `section` of the section that is searched."""
+    """A piece of the actuator; without `file` or `section` of the section that is searched.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> half = beamopt.SegmentChoice(share=0.5)
+    >>> len(beamopt.RodRules(segments=(half, half)).segments)
+    2
+    """
 
     share: Number = quantity(..., "of the actuator's length; they add to 1", low=1e-3, high=1)
     turned: Number = quantity(
@@ -74,6 +89,12 @@ class RodRules(Model):
     """The rod that judges sections: an arc, a chain of them, or a rod under loads.
 
     "auto" takes the lowest rung that is exact, or near enough; `beamopt rung SCENE` says why.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.RodRules(rest_curvature=(0.01, 0.0, 0.0)).rung
+    'auto'
     """
 
     rung: Literal["auto", "arc", "chain", "loaded"] = quantity("auto", "how it is solved")
@@ -108,6 +129,12 @@ class Loading(Model):
     """What loads the actuator besides pressure. The room's z axis points up.
 
     Forces keep their direction in the room; followers turn with the section that they act on.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Loading(density=1070.0).weighs
+    True
     """
 
     mount_z: Vector = quantity((0.0, 0.0, 1.0), "direction of the straight actuator in the room")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,35 +18,38 @@ from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.input_file import read_json
 from beamopt.provenance import provenance
 from beamopt.scene import Scene
 from beamopt.target import Target
 
-__all__ = ["bound_numbers", "bound_summary", "claim_bound_folder", "write_bound"]
+__all__ = ["bound_numbers", "bound_summary", "claimed_for_bound", "write_bound"]
 
 MARKER = "bound.json"
 OF_RESPONSE = ("ideal.csv", "bound.svg", "bound.png")
-FILES = (*OF_RESPONSE, "timing.csv", "provenance.json")  # may be there before the marker
+FILES = (*OF_RESPONSE, "timing.csv", "provenance.json")
+SCHEMA = "beamopt-bound/1"
+# those of earlier versions had no schema
+KIND = FolderKind("a bound", MARKER, ('{"schema":"beamopt-bound/', '{"scene":"'))
 HEADER = "p1,p2,p3,x,y,z,target_x,target_y,target_z,weight,distance_mm"
 
 
-def claim_bound_folder(folder: Path, scene: Scene) -> None:
-    """Take an empty folder, or that of an earlier bound of a scene of this name.
+@contextmanager
+def claimed_for_bound(folder: Path, scene: Scene) -> Iterator[None]:
+    """Take an empty folder, or that of an earlier bound of a scene of this name; hold it meanwhile.
 
     Raises
     ------
-    InputError : it holds anything else, or can not be made.
+    InputError : it holds anything else, or see `claimed`.
     """
-    claim_folder(folder, MARKER, FILES, resume=True)
-    there = folder / MARKER
-    if not there.exists():
-        return
-    kept = read_json(there).get("scene")
-    if kept != scene.name:
-        said = f"is what is there; now asked for: {scene.name}; name another folder"
-        raise InputError(there, "scene", kept, said)
+    with claimed(folder, KIND, resume=True):
+        there = folder / MARKER
+        kept = read_json(there).get("scene") if there.exists() else scene.name
+        if kept != scene.name:
+            said = f"is what is there; now asked for: {scene.name}; name another folder"
+            raise InputError(there, "scene", kept, said)
+        yield
 
 
 def write_bound(
@@ -73,7 +77,7 @@ def write_bound(
     timing = [(part, seconds, "s") for part, seconds in found.seconds.items()]
     write_atomic(folder / "timing.csv", csv_text("what,value,unit", timing))
     write_atomic(folder / "provenance.json", json_text(provenance()))
-    numbers = {"scene": scene.name, **(assumed or {}), **bound_numbers(found)}
+    numbers = {"schema": SCHEMA, "scene": scene.name, **(assumed or {}), **bound_numbers(found)}
     write_atomic(folder / MARKER, json_text(numbers))
 
 

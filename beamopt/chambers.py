@@ -21,7 +21,14 @@ Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=
 
 
 class Points(Model):
-    """Voronoi feature points [mm]; type 0 is material, 1…3 a supply."""
+    """Voronoi feature points [mm]; type 0 is material, 1…3 a supply.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Points(x=(15.0, -15.0), y=(0.0, 0.0), type=(1, 0)).build()
+    <FeaturePoints: 2, of material and supplies 1, 2, 3: 1, 1, 0, 0>
+    """
 
     x: tuple[Position, ...]
     y: tuple[Position, ...]
@@ -43,7 +50,14 @@ class Points(Model):
 
 
 class DrawnChamber(Model):
-    """Either a piece of a ring (r, phi, corner) or a circle (center, radius)."""
+    """Either a piece of a ring (r, phi, corner) or a circle (center, radius).
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.DrawnChamber(supply=1, center=(17.5, 0.0), radius=4.5).build().supply
+    1
+    """
 
     supply: Count = quantity(..., "pressure supply of the chamber", low=1, high=3)
     r: tuple[Position, Position] | None = quantity(None, "inner and outer radius", unit="mm")

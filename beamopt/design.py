@@ -34,15 +34,7 @@ from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant, section_saint_venant
 from beamopt.workspace import Workspace, pressure_grid
 
-__all__ = [
-    "Design",
-    "Grid",
-    "Levels",
-    "WallElements",
-    "load_design",
-    "read_design",
-    "section_values",
-]
+__all__ = ["Design", "Grid", "Levels", "WallElements", "load_design", "section_values"]
 
 SCHEMA = "beamopt-design/1"
 
@@ -51,6 +43,27 @@ class Design(DesignKeys):
     """A section, the actuator that it is extruded to, and its pressure levels.
 
     Exactly one of `feature_points` and `drawing` says what the section is.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> angles = (0.0, 120.0, 240.0)
+    >>> design = beamopt.Design(
+    ...     schema="beamopt-design/1",
+    ...     grid=beamopt.Grid(),
+    ...     drawing=tuple(
+    ...         beamopt.DrawnChamber(supply=k, r=(13.0, 22.0), phi=(angle, angle + 80.0))
+    ...         for k, angle in enumerate(angles, 1)
+    ...     ),
+    ...     wall_elements=0,
+    ...     seal=beamopt.Seal(skin=1.0, wall=1.0),
+    ...     actuator=beamopt.Actuator(),
+    ...     pressures=(0.0, 10.0, 20.0),
+    ... )
+    >>> design.workspace.tips.shape
+    (27, 3)
+    >>> design.save("chambers.json").name
+    'chambers.json'
     """
 
     @classmethod
@@ -236,6 +249,13 @@ def load_design(path: str | Path) -> Design:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> file = beamopt.load_scene("sealed-section").target.file
+    >>> beamopt.load_design(str(file)).seal.skin
+    1.0
     """
     from beamopt.segment_files import with_sections
 

@@ -1,7 +1,8 @@
-"""One process at a time: a lock on a journal, held while a search writes to it."""
+"""One process at a time: a lock on a file, which ends with the process that holds it."""
 
 from __future__ import annotations
 
+import errno
 import os
 import time
 from collections.abc import Iterator
@@ -9,13 +10,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from beamopt.errors import InputError
+__all__ = ["HeldElsewhereError", "is_free", "locked"]
 
-__all__ = ["locked"]
-
-PATIENCE = 2.0  # s; a process that was just killed may still be letting go
+PATIENCE = 2.0  # s
 
 _HELD: list[BinaryIO] = []
+
+
+class HeldElsewhereError(Exception):
+    """Another process holds the lock."""
 
 
 def _let_go() -> None:
@@ -29,38 +32,65 @@ if hasattr(os, "register_at_fork"):
 
 
 @contextmanager
-def locked(path: Path) -> Iterator[None]:
+def locked(path: Path, patience: float | None = None) -> Iterator[BinaryIO]:
     """Keep every other process from `locked` of the same file, where the system can.
 
-    The file is made if it is not there, and else left as it is.
+    The file is made if it is not there, and else left as it is. Who holds the lock may write to
+    the stream, and may delete the file.
+
+    patience : time to wait for it [s]; a process that was just killed may still be letting go.
 
     Raises
     ------
-    InputError : another process holds it.
+    HeldElsewhereError : another process holds it.
+    OSError : the file is a link, or can not be made.
     """
-    with path.open("ab") as stream:
-        _lock(stream, path)
+    until = time.monotonic() + (PATIENCE if patience is None else patience)
+    while True:
+        stream = os.fdopen(os.open(path, _FLAGS, 0o666), "r+b", buffering=0)
         _HELD.append(stream)
         try:
-            yield
+            if not _lock(stream, until):
+                raise HeldElsewhereError
+            if _is_at(stream, path):
+                yield stream
+                return
         finally:
             if stream in _HELD:  # not in a forked child
                 _HELD.remove(stream)
+                stream.close()
 
 
-def _lock(stream: BinaryIO, path: Path) -> None:
+_FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+
+
+def is_free(descriptor: int) -> bool:
+    """Lock an open file or folder if no other process has; false where one has.
+
+    True too where the system has no locks.
+    """
     try:
         import fcntl
     except ImportError:
-        return
-    patience = time.monotonic() + PATIENCE
-    while True:
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            if time.monotonic() > patience:
-                said = "another process is writing to this folder"
-                raise InputError(path, "", None, said) from None
-            time.sleep(0.05)
-        else:
-            return
+        return True
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        return error.errno not in (errno.EWOULDBLOCK, errno.EACCES)
+    return True
+
+
+def _lock(stream: BinaryIO, until: float) -> bool:
+    while not is_free(stream.fileno()):
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+def _is_at(stream: BinaryIO, path: Path) -> bool:
+    """False where the process that held the lock before deleted the file."""
+    try:
+        return os.path.samestat(os.fstat(stream.fileno()), path.stat(follow_symlinks=False))
+    except FileNotFoundError:
+        return False

@@ -7,14 +7,28 @@ import errno
 import json
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["cell_text", "csv_text", "json_text", "write_atomic", "write_changed"]
+from beamopt.errors import InputError
+
+__all__ = [
+    "cell_text",
+    "check_replaceable",
+    "csv_text",
+    "json_text",
+    "naming",
+    "refuse_link",
+    "replacing",
+    "write_atomic",
+    "write_changed",
+]
 
 FORMULA = re.compile(r"'*[=+\-@\t\r]")  # also behind apostrophes: one more tells them apart
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 LINE_END = "\r\n"
+END = 1 << 14  # bytes, in which a file says what wrote it
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -22,20 +36,92 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 
     Raises
     ------
+    InputError : the name is a link.
     OSError : the folder is missing or can not be written.
     """
-    data = content.encode() if isinstance(content, str) else content
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    data = _bytes(content)
+    with replacing(path) as temporary, temporary.open("xb") as stream:
+        stream.write(data)
+
+
+def _bytes(content: str | bytes) -> bytes:
+    """UTF-8; what a name of any bytes holds that is none is written as an escape."""
+    return content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A temporary name beside a file; what is written to it takes the file's place in the end.
+
+    Raises
+    ------
+    InputError : the file is a link.
+    OSError : the folder is missing or can not be written.
+    """
+    refuse_link(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(path.parent))
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    with naming(path):
+        temporary.unlink(missing_ok=True)  # of an earlier process with this number
+        try:
+            yield temporary
+            with temporary.open("rb+") as stream:
+                os.fsync(stream.fileno())
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Let an error of the file system name the file, which one of a full disk does not."""
     try:
-        with temporary.open("wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+        yield
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None
+        raise
+
+
+def refuse_link(path: Path) -> None:
+    """Refuse to write to, or through, a symbolic link.
+
+    Raises
+    ------
+    InputError : it is one.
+    """
+    if path.is_symlink():
+        said = "is a link; nothing is written through links: name the file or folder itself"
+        raise InputError(path, "", None, said)
+
+
+def check_replaceable(path: Path, mark: str, made_by: str, *, force: bool = False) -> None:
+    """Refuse to write over a file that a command did not write.
+
+    mark : a text near the beginning or the end of each file that the command writes.
+    force : whether it may be written over all the same.
+
+    Raises
+    ------
+    InputError : the file has no mark and `force` is off; it is a link, a folder or a device.
+    """
+    refuse_link(path)
+    if not path.exists():
+        return
+    if not path.is_file():
+        said = "is a folder; name a file" if path.is_dir() else "is no file; name another one"
+        raise InputError(path, "", None, said)
+    if not force and mark.encode() not in _ends_of(path):
+        said = f"was not written by {made_by}; --force writes over it all the same"
+        raise InputError(path, "", None, said)
+
+
+def _ends_of(path: Path) -> bytes:
+    """What a file holds at its beginning and its end."""
+    with path.open("rb") as stream:
+        head = stream.read(END)
+        stream.seek(max(len(head), path.stat().st_size - END))
+        return head + stream.read(END)
 
 
 def write_changed(path: Path, content: str | bytes) -> bool:
@@ -43,9 +129,11 @@ def write_changed(path: Path, content: str | bytes) -> bool:
 
     Raises
     ------
+    InputError : the name is a link.
     OSError : the folder is missing or can not be written.
     """
-    data = content.encode() if isinstance(content, str) else content
+    data = _bytes(content)
+    refuse_link(path)
     if path.is_file() and path.read_bytes() == data:
         return False
     write_atomic(path, data)

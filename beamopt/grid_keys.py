@@ -18,7 +18,14 @@ Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=200
 
 
 class Grid(Model):
-    """The polar grid of equal-area elements."""
+    """The polar grid of equal-area elements.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Grid(radial=64).build().shape
+    (64, 360)
+    """
 
     inner_radius: Number = quantity(10.0, "inner radius of the ring", unit="mm", low=0, high=1000)
     outer_radius: Number = quantity(25.0, "outer radius of the ring", unit="mm", low=0.5, high=1000)

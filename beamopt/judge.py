@@ -33,7 +33,14 @@ Found = TypeVar("Found")
 
 
 class Status(Enum):
-    """How judging a candidate ended; the value is the text shown to people."""
+    """How judging a candidate ended; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Status.NO_MATERIAL.value
+    'the section has no material'
+    """
 
     JUDGED = "judged"
     NO_FEATURE_POINTS = "recombination left no feature point"
@@ -50,6 +57,12 @@ class Verdict:
     L : first objective, Σ of squared node distances [mm²]; infinite unless judged.
     K : second objective λ r; infinite unless judged.
     R : what the scene's weighted rules add [mm²]; 0 without any.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Verdict(L=10.0, K=2.0).T
+    12.0
     """
 
     L: float
@@ -85,6 +98,16 @@ class Judge:
     neighbour_weight : λ of the second objective.
     rules : what a section is sealed by before it is judged.
     making : what is asked of it beside its tips.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> import numpy as np
+    >>> scene = beamopt.load_scene("random-section")
+    >>> judge: beamopt.Judge = scene.judge(scene.load_target())
+    >>> design = scene.design_of(scene.random_points(np.random.default_rng(0)))
+    >>> [verdict.status.name for verdict in judge([design.points])]
+    ['JUDGED']
     """
 
     grid: PolarGrid

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from beamopt.errors import InputError
+from beamopt.files import naming, refuse_link, write_atomic
 from beamopt.folder import differences
 from beamopt.input_file import check_regular
 
@@ -55,11 +56,13 @@ class LineJournal:
     """A file whose first line says what was asked, and whose others are results.
 
     path : of the file. asked : what the results depend on; that of a file that is there must be
-    the same; None takes what the file says. kind : what it is a journal of, for people.
+    the same; None takes what the file says, and reads it only. kind : what it is a journal of, for
+    people.
 
     Raises
     ------
-    InputError : the file that is there is another one's, or is damaged; names the line.
+    InputError : the file that is there is another one's, or is damaged (names the line), or is a
+        link.
     """
 
     def __init__(self, path: Path, asked: dict[str, Any] | None, kind: str) -> None:
@@ -67,22 +70,26 @@ class LineJournal:
         self.kind = kind
         self.entries: list[dict[str, Any]] = []
         self.digests = True
+        if asked is not None:
+            refuse_link(path)
         if path.exists():
             check_regular(path, None)
-        lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
+        content = path.read_bytes() if path.exists() else b""
+        lines = content.splitlines(keepends=True)
         whole = [line for line in lines if line.endswith(b"\n")]
         if not whole:
-            if asked is None:
+            head = b"" if asked is None else (with_digest(json.dumps(asked)) + "\n").encode()
+            if asked is None or not head.startswith(content):  # half a line of another file
                 raise self.damaged(1)
             self.asked = asked
-            path.write_text(with_digest(json.dumps(asked)) + "\n", encoding="utf-8")
+            write_atomic(path, head)
             return
         self.digests = SEALED.fullmatch(whole[0][:-1].decode(errors="replace")) is not None
         self.asked = self._object(1, whole[0])
         if asked is not None and self.asked != json.loads(json.dumps(asked)):
             raise self._other(asked)
         self.entries = [self._object(number, line) for number, line in enumerate(whole[1:], 2)]
-        if len(whole) < len(lines):  # a kill left half a line
+        if asked is not None and len(whole) < len(lines):  # a kill left half a line
             with path.open("r+b") as stream:
                 stream.truncate(sum(map(len, whole)))
 
@@ -134,5 +141,5 @@ class LineJournal:
         if keep:
             self.entries.append(entry)
         text = json.dumps(entry)
-        with self.path.open("a", encoding="utf-8") as stream:
+        with naming(self.path), self.path.open("a", encoding="utf-8") as stream:
             stream.write((with_digest(text) if self.digests else text) + "\n")

@@ -93,6 +93,12 @@ class Making(Model):
 
     A rejected candidate is never selected: with many feature points hardly any random section has
     few chambers, so that weights lead there and a rejection does not.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Making(chambers=(1, 1, 1)).rules_set
+    True
     """
 
     chambers: tuple[MostChambers, MostChambers, MostChambers] | None = quantity(

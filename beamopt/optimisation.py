@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
-from contextlib import nullcontext
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -50,12 +50,22 @@ def optimize(
     Raises
     ------
     InputError : the target, or the folder or journal to go on with, can not be used.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
+    >>> found = beamopt.optimize(scene, "run", figures=False)
+    >>> found.evaluations
+    38
     """
     target = scene.load_target()
-    folder = None if out is None else RunFolder.open(Path(out), resume=resume)
-    with nullcontext() if folder is None else Journal(folder.journal) as journal:
-        if folder is not None:
+    with ExitStack() as held:
+        folder, journal = None, None
+        if out is not None:
+            folder = held.enter_context(RunFolder.open(Path(out), resume=resume))
             folder.check(scene)
+            journal = held.enter_context(Journal(folder.journal))
         ended = run(
             scene,
             scene.judge(target),

@@ -11,7 +11,8 @@ from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import csv_text
 from beamopt.table import Table, read_table
-from beamopt.target import COLUMNS, BaseFrame, Target, check_scale, tips_csv
+from beamopt.target import BaseFrame, Target, check_scale
+from beamopt.workspace import COLUMNS, tips_csv
 
 __all__ = ["aim_csv", "direction_weight_of", "read_pairs"]
 

@@ -25,6 +25,16 @@ class Refinement:
     design : in L + R and in K never worse than the points before were, judged by the scene's rules.
     refined : how it came about. seconds : time it took.
     compiling : before it, for kernels to be compiled or loaded [s].
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> little = ["search.generations=0", "refine.flips=100", "refine.rounds=1", "refine.steps=1"]
+    >>> scene = beamopt.load_scene("random-section", little)
+    >>> best = beamopt.optimize(scene).best
+    >>> found: beamopt.Refinement = beamopt.refine_design(best, scene)
+    >>> found.refined.after.L <= found.refined.before.L
+    True
     """
 
     design: Design
@@ -56,6 +66,14 @@ def refine_design(
     Raises
     ------
     InputError : the design is drawn, or the scene's target can not be used.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> little = ["search.generations=0", "refine.flips=100", "refine.rounds=1", "refine.steps=1"]
+    >>> scene = beamopt.load_scene("random-section", little)
+    >>> beamopt.refine_design(beamopt.optimize(scene).best, scene).refined.status.name
+    'REFINED'
     """
     return refine_points(design.points, scene, target or scene.load_target(), callback)
 

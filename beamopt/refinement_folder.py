@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+import os
 from pathlib import Path
 from typing import Any
 
 from beamopt.design import load_design
 from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.folder import FolderKind, clear_leftovers
 from beamopt.input_file import read_text
 from beamopt.judge import Status, Verdict
 from beamopt.provenance import provenance
@@ -19,6 +21,7 @@ from beamopt.scene import Scene
 from beamopt.target import Target
 
 __all__ = [
+    "KIND",
     "REFINEMENT_FILES",
     "becomes",
     "refinement_numbers",
@@ -36,6 +39,9 @@ REFINEMENT_FILES = (
     "refined.png",
 )
 """Every file that `write_refinement` writes."""
+
+KIND = FolderKind("a refinement", "provenance.json", ("{",), goes_on=False)
+"""Folder of a refinement that is not a search's."""
 
 
 def write_refinement(
@@ -64,6 +70,7 @@ def write_refinement(
 
 def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refinement) -> None:
     """The same with a summary, for a refinement that is not a search's: a folder of its own."""
+    clear_leftovers(folder, (*REFINEMENT_FILES, "summary.json", "timing.csv", "provenance.json"))
     write_refinement(folder, scene, target, found)
     numbers = {"scene": scene.name, "seed": scene.search.seed, **refinement_numbers(found, scene)}
     write_atomic(folder / "summary.json", json_text(numbers))
@@ -98,7 +105,7 @@ def set_aside(folder: Path) -> Path:
     """Move a refinement that is of an earlier best design into a folder of its own."""
     numbers = itertools.count(1)
     names = (folder / f"earlier-refinement-{number}" for number in numbers)
-    aside = next(path for path in names if not path.exists())
+    aside = next(path for path in names if not os.path.lexists(path))
     aside.mkdir()
     for name in reversed(REFINEMENT_FILES):  # the design last: until then it can be done again
         if (folder / name).exists():

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +26,9 @@ from beamopt.scene import Scene
 from beamopt.target import Target
 from beamopt.timing import Timing
 from beamopt.workspace import pressure_grid
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["EarlierRefinement", "Optimisation"]
 
@@ -52,6 +56,14 @@ class Optimisation:
     timing : of the sections that were judged now.
     refinement : of the best design, where the scene asks for it and there was one.
     there : what became of a refinement that the run folder held already.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> found: beamopt.Optimisation = beamopt.optimize(scene)
+    >>> found.status.name
+    'GENERATIONS'
     """
 
     status: StopReason
@@ -105,6 +117,13 @@ class Optimisation:
     def reach(self) -> Reach | None:
         """How the best design follows the target's trajectories; None where it has none."""
         return self._judge.question.reach(self.best.values) if self.target.paths else None
+
+    def to_frame(self) -> DataFrame:
+        """Tips of the best design and of the target, a row each, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from beamopt.result_tables import tips_table_csv
+
+        return frame_of(tips_table_csv(self.target.aim, self.answers))
 
     @cached_property
     def _judge(self) -> Judge:

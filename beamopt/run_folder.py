@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 from beamopt.errors import InputError
 from beamopt.evolve.history import GenerationNumbers
 from beamopt.files import csv_text, json_text, write_atomic, write_changed
-from beamopt.folder import claim_folder, clear_leftovers, differences
+from beamopt.folder import FolderKind, claimed, clear_leftovers, differences
 from beamopt.input_file import read_bytes, read_json
 from beamopt.judge import Status
 from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
@@ -39,14 +40,12 @@ __all__ = ["RunFolder"]
 GOES_ON = {"search.generations", "stop", "refine"}  # keys that may change when a run goes on
 
 FIGURES = ("best.svg", "best.png", "convergence.svg", "convergence.png")
-BEGINNING = (
+KIND = FolderKind("a search", "journal.jsonl", ('{"schema":"beamopt-journal/',))
+NAMES = (
     "journal.jsonl",
     "target.csv",
     *SOURCES.values(),
     *PATHS,
-)  # may be there before scene.toml
-NAMES = (
-    *BEGINNING,
     "scene.toml",
     "history.csv",
     "tips.csv",
@@ -68,19 +67,20 @@ class RunFolder:
     path: Path
 
     @classmethod
-    def open(cls, path: Path, *, resume: bool) -> RunFolder:
-        """Make a run folder, or with `resume` take the one there.
+    @contextmanager
+    def open(cls, path: Path, *, resume: bool) -> Iterator[RunFolder]:
+        """Make a run folder, or with `resume` take the one there; hold it meanwhile.
 
         Raises
         ------
-        InputError : it holds something already, or something else, or can not be written.
+        InputError : see `claimed`.
         """
-        claim_folder(path, "scene.toml", BEGINNING, resume=resume)
-        return cls(path)
+        with claimed(path, KIND, resume=resume):
+            yield cls(path)
 
     @property
     def journal(self) -> Path:
-        """The append-only journal; whoever holds its lock may write to the folder."""
+        """The append-only journal, which also tells that the folder is a run's."""
         return self.path / "journal.jsonl"
 
     @property

@@ -43,12 +43,18 @@ __all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
-MOST_POINTS, MOST_ELEMENTS = 20_000_000, 2_000_000_000  # of all sections judged at once
 SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how many; their stream
 
 
 class SectionRules(Model):
-    """How a section is made from feature points."""
+    """How a section is made from feature points.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.SectionRules(feature_points=40).material_probability
+    0.5
+    """
 
     feature_points: Count = quantity(
         100, "feature points of a new section, N_f", low=1, high=10_000
@@ -62,7 +68,14 @@ class SectionRules(Model):
 
 
 class Pressures(Model):
-    """What the supplies can give."""
+    """What the supplies can give.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Pressures(levels=(0.0, 10.0, 20.0)).levels[-1]
+    20.0
+    """
 
     levels: Levels = quantity(
         (0.0, 50.0, 100.0), "three ascending levels, each 0 … 2000", unit="kPa"
@@ -70,10 +83,17 @@ class Pressures(Model):
 
 
 class Scene(Model):
-    """Everything that a search needs, as one checked and frozen object."""
+    """Everything that a search needs, as one checked and frozen object.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Scene(name="short", actuator=beamopt.Actuator(length=80.0))
+    <Scene 'short': target random, r 10…25 mm, 20 individuals, 100 generations, seed 0>
+    """
 
     schema_: Literal["beamopt-scene/1"] = Field(
-        "beamopt-scene/1", alias="schema", description="version of this file's format"
+        default="beamopt-scene/1", alias="schema", description="version of this file's format"
     )
     name: str = quantity("scene", "a short name, for titles and folders")
     description: str = quantity("", "one sentence on what it shows")
@@ -108,27 +128,8 @@ class Scene(Model):
     def _leaves_room(self) -> Scene:
         self.seal.check_fits(self.grid.build())
         self.making.check_fits(self.grid.build())
-        batch = round(max(1.0, self.search.crossover_probability) * self.search.population)
-        self.check_memory("search.population", self.search.population, batch)
+        self.search.check_memory(self.section.feature_points, self.grid.radial * self.grid.angular)
         return self
-
-    def check_memory(self, key: str, population: int, batch: int) -> None:
-        """Refuse a batch of sections that takes gigabytes.
-
-        key, population : what asks for it. batch : sections judged at once.
-
-        Raises
-        ------
-        InputError : the key, its value and what it may be.
-        """
-        points, elements = self.section.feature_points, self.grid.radial * self.grid.angular
-        for each, most, what in (
-            (points, MOST_POINTS, "section.feature_points"),
-            (elements, MOST_ELEMENTS, "grid.radial × grid.angular"),
-        ):
-            if batch * each > most:
-                said = f"sections of a generation × {what} ({each:,}): at most {most:,}"
-                raise InputError("", key, population, said)
 
     def __repr__(self) -> str:
         search, ring = self.search, self.grid
@@ -267,6 +268,12 @@ def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:
     Raises
     ------
     InputError : the file, the key and what is allowed there.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.load_scene("random-section", ["search.generations=50"]).search.generations
+    50
     """
     path = bundled_scenes().get(str(scene), Path(scene))
     if not path.exists():

@@ -21,6 +21,12 @@ class Seal(Model):
 
     A wall is kept between chambers of different supplies; gaps in one supply's chambers that are
     narrower become part of them.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Seal(skin=1.0, wall=0.8).rules.sealed
+    True
     """
 
     skin: Number = quantity(

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from typing import Literal
 
+from beamopt.generation_size import check_generation
 from beamopt.model import Count, Model, Number, quantity
 
 __all__ = ["Refining", "Search", "Stop"]
 
 
 class Search(Model):
-    """The genetic algorithm."""
+    """The genetic algorithm.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Search(generations=50).population
+    20
+    """
 
     population: Count = quantity(20, "individuals, N_p", low=2, high=10_000)
     generations: Count = quantity(100, "generations, N_g", low=0, high=1_000_000)
@@ -28,9 +36,21 @@ class Search(Model):
     mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
     seed: Count = quantity(0, "seed of everything random in the search", low=0)
 
+    def check_memory(self, points: int, elements: int) -> None:
+        """Refuse a generation that takes gigabytes; see `check_generation`."""
+        batch = round(max(1.0, self.crossover_probability) * self.population)
+        check_generation("search.population", self.population, batch, points, elements)
+
 
 class Stop(Model):
-    """Reasons to stop before the last generation; a key that is left out never does."""
+    """Reasons to stop before the last generation; a key that is left out never does.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Stop(evaluations=500)
+    Stop(evaluations=500)
+    """
 
     evaluations: Count | None = quantity(
         None, "most sections judged; the first population is", low=1
@@ -41,7 +61,14 @@ class Stop(Model):
 
 
 class Refining(Model):
-    """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions."""
+    """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.Refining(rounds=2).rounds
+    2
+    """
 
     finish: bool = quantity(False, "whether a search ends by refining its best design")
     flips: Count = quantity(40_000, "flips of a type proposed in a round", low=0, high=10**9)

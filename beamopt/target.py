@@ -10,14 +10,12 @@ import numpy as np
 from beamopt.aim import Aim, aim_of_workspace
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
-from beamopt.files import csv_text
 from beamopt.section.cross_section import CrossSection
 from beamopt.table import Table, read_table
-from beamopt.workspace import NODES, Workspace, node_index, pressure_grid
+from beamopt.workspace import COLUMNS, NODES, Workspace, node_index, pressure_grid
 
-__all__ = ["COLUMNS", "BaseFrame", "Target", "check_scale", "oddities", "read_target", "tips_csv"]
+__all__ = ["BaseFrame", "Target", "check_scale", "oddities", "read_target"]
 
-COLUMNS = {"p1": "kPa", "p2": "kPa", "p3": "kPa", "x": "mm", "y": "mm", "z": "mm"}
 ONLY_OF_POINTS = ("weight", "tx", "ty", "tz", "direction_weight")
 SAME_PRESSURE = 1e-6  # kPa
 
@@ -29,6 +27,13 @@ class Target:
     workspace : where the aim's rows are its 27 nodes; else None.
     paths : (k, 3) samples of each trajectory [mm], corners included; joined in `aim.paths`.
     warnings : sentences for people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> target: beamopt.Target = beamopt.load_scene("hand-drawn-workspace").load_target()
+    >>> target
+    <Target: <Workspace: 27 tips at 0, 50, 100 kPa, up to 35 mm off the axis>, 0 trajectories>
     """
 
     aim: Aim
@@ -208,8 +213,3 @@ def _found_levels(table: Table) -> str:
 
 def _listed(levels: tuple[float, float, float]) -> str:
     return ", ".join(f"{level:g}" for level in levels)
-
-
-def tips_csv(pressures: FloatArray, tips: FloatArray) -> str:
-    """The table `p1,p2,p3,x,y,z` [kPa, mm] that targets are read from."""
-    return csv_text(",".join(COLUMNS), np.hstack([pressures, tips]).tolist())

@@ -32,6 +32,12 @@ class TargetChoice(Model):
     a CSV file with the columns p1,p2,p3,x,y,z at all 27 combinations; "points": such a file with
     rows at any pressures, also with the columns weight, tx,ty,tz (direction of the tip's axis) and
     direction_weight; "paths": nothing but the trajectories of `paths`, which go with any kind.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.TargetChoice(kind="random", seed=3).seed
+    3
     """
 
     kind: Literal["random", "section", "workspace", "points", "paths"] = quantity(
@@ -40,7 +46,7 @@ class TargetChoice(Model):
     seed: Count = quantity(0, 'seed of the random section, for kind "random"', low=0)
     file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
     direction_weight: Number | None = Field(
-        None,
+        default=None,
         description="of a squared difference of unit tangents, for kind \"points\"; (length/10)² "
         "if left out",
         ge=0,

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
+from beamopt.files import csv_text
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = [
+    "COLUMNS",
     "HEXAHEDRON_EDGES",
     "HEXAHEDRON_NODES",
     "NODES",
@@ -19,8 +25,12 @@ __all__ = [
     "node_index",
     "pressure_grid",
     "rms_distance",
+    "tips_csv",
 ]
 
+
+COLUMNS = {"p1": "kPa", "p2": "kPa", "p3": "kPa", "x": "mm", "y": "mm", "z": "mm"}
+"""Columns of a table of tips, and their units."""
 
 NODES = 27
 """Pressure combinations of a workspace: three levels of three supplies."""
@@ -89,6 +99,14 @@ class Workspace:
     Raises
     ------
     ValueError : levels that do not ascend, or tips of another shape.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> design = beamopt.load_design(str(beamopt.load_scene("sealed-section").target.file))
+    >>> workspace: beamopt.Workspace = design.workspace
+    >>> workspace.tips[0].round(6).tolist()
+    [0.0, 0.0, 100.0]
     """
 
     levels: tuple[float, float, float]
@@ -114,6 +132,12 @@ class Workspace:
         """(27, 3) [kPa], matching `tips`."""
         return pressure_grid(self.levels)
 
+    def to_frame(self) -> DataFrame:
+        """Columns p1, p2, p3 [kPa], x, y, z [mm], as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+
+        return frame_of(tips_csv(self.pressures, self.tips))
+
     @property
     def hexahedron(self) -> FloatArray:
         """(27, 3) nodes of VTK's triquadratic hexahedron (cell type 29) in VTK's order [mm]."""
@@ -133,6 +157,11 @@ class Workspace:
         """(12, points, 3) the hexahedron's edges as polylines [mm]."""
         weights = _lagrange(np.array([0.0, 0.5, 1.0]), np.linspace(0, 1, points))
         return np.asarray(np.einsum("pa,eax->epx", weights, self.tips[HEXAHEDRON_EDGES]))
+
+
+def tips_csv(pressures: FloatArray, tips: FloatArray) -> str:
+    """The table `p1,p2,p3,x,y,z` [kPa, mm] that targets are read from."""
+    return csv_text(",".join(COLUMNS), np.hstack([pressures, tips]).tolist())
 
 
 def _lagrange(nodes: FloatArray, at: FloatArray) -> FloatArray:

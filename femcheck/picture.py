@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from beamopt.arrays import FloatArray
 from beamopt.files import write_atomic
 from beamopt.plot.style import SUPPLY_COLOURS
 from beamopt.rod.arc import arc_centreline
+from beamopt.scratch import scratch_folder
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
 
@@ -34,8 +34,8 @@ def draw(
     x : (n, 3) deformed nodes [mm] at pressures (3,) [kPa]. said : what the title adds.
     """
     scene = _scene(subject, solid, x, pressures, said)
-    with tempfile.TemporaryDirectory(prefix="femcheck-") as temporary:
-        data, image = Path(temporary) / "scene.npz", Path(temporary) / "picture.png"
+    with scratch_folder() as temporary:
+        data, image = temporary / "scene.npz", temporary / "picture.png"
         np.savez(data, allow_pickle=False, **scene)
         # by its path and without the working directory's modules: it needs nothing of ours
         program = Path(__file__).with_name("render.py")
@@ -48,7 +48,7 @@ def draw(
         except subprocess.TimeoutExpired:
             said = f"drawing took more than {SECONDS:g} s"
         if not image.exists():
-            (folder / "picture.log").write_text(said, encoding="utf-8")
+            write_atomic(folder / "picture.log", said)
             return False
         write_atomic(folder / "picture.png", image.read_bytes())
         (folder / "picture.log").unlink(missing_ok=True)

@@ -4,6 +4,7 @@ import io
 import json
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,15 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from beamopt.files import cell_text, csv_text, json_text, write_atomic
+from beamopt.errors import InputError
+from beamopt.files import (
+    cell_text,
+    check_replaceable,
+    csv_text,
+    json_text,
+    write_atomic,
+    write_changed,
+)
 
 
 def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
@@ -112,3 +121,52 @@ def test_any_text_survives_json(text: str) -> None:
         written = json_text({text: [text]}, escaped=escaped).encode()
         assert json.loads(written) == {text: [text]}
     assert "mm³" in json_text({"unit": "mm³"}, escaped=False)
+
+
+@pytest.mark.parametrize("write", [write_atomic, write_changed])
+@pytest.mark.parametrize("there", [True, False], ids=["link", "dangling"])
+def test_nothing_is_written_through_a_link(
+    tmp_path: Path, write: Callable[[Path, str], object], *, there: bool
+) -> None:
+    other, link = tmp_path / "other", tmp_path / "link"
+    if there:
+        other.write_text("mine")
+    link.symlink_to(other)
+    with pytest.raises(InputError, match="is a link"):
+        write(link, "new")
+    assert link.is_symlink()
+    assert (other.read_text() if there else None) == ("mine" if there else None)
+    assert {item.name for item in tmp_path.iterdir()} == {"link"} | ({"other"} if there else set())
+
+
+def test_a_temporary_name_that_is_taken_by_a_link_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "other").write_text("mine")
+    (tmp_path / f".file.{os.getpid()}.tmp").symlink_to(tmp_path / "other")
+    write_atomic(tmp_path / "file", "new")
+    assert (tmp_path / "other").read_text() == "mine"
+    assert (tmp_path / "file").read_text() == "new"
+    assert {item.name for item in tmp_path.iterdir()} == {"file", "other"}
+
+
+@pytest.mark.parametrize("place", ["beginning", "end", "middle"])
+def test_a_file_that_says_who_made_it_is_replaceable(tmp_path: Path, place: str) -> None:
+    path, rest = tmp_path / "file", "x" * 100_000
+    check_replaceable(path, "made by us", "us")
+    text = {"beginning": "made by us" + rest, "end": rest + "made by us", "middle": rest}[place]
+    path.write_text(text)
+    if place == "middle":
+        with pytest.raises(InputError, match="--force"):
+            check_replaceable(path, "made by us", "us")
+    else:
+        check_replaceable(path, "made by us", "us")
+    check_replaceable(path, "made by us", "us", force=True)
+
+
+def test_what_is_no_file_is_never_replaceable(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to(tmp_path / "nothing")
+    for name in ("folder", "pipe", "link"):
+        with pytest.raises(InputError) as caught:
+            check_replaceable(tmp_path / name, "us", "us", force=True)
+        assert caught.value.where == str(tmp_path / name)

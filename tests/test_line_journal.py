@@ -124,3 +124,38 @@ def test_an_empty_file_is_a_new_journal(tmp_path: Path) -> None:
     (tmp_path / "j").write_bytes(b"")
     assert journal(tmp_path / "j").entries == []
     assert (tmp_path / "j").read_bytes().endswith(b"}\n")
+
+
+@pytest.mark.parametrize("text", ["my notes", '{"schema": "mine"', "{"])
+def test_a_foreign_line_without_an_end_is_left_alone(tmp_path: Path, text: str) -> None:
+    """Unless it is how the journal itself begins."""
+    path = tmp_path / "j"
+    path.write_text(text)
+    if text == "{":
+        assert journal(path).entries == []
+        return
+    with pytest.raises(InputError, match="line 1"):
+        journal(path)
+    assert path.read_text() == text
+
+
+@pytest.mark.parametrize("there", [True, False], ids=["link", "dangling"])
+def test_a_journal_is_not_followed_through_a_link(tmp_path: Path, *, there: bool) -> None:
+    other, path = tmp_path / "other", tmp_path / "j"
+    if there:
+        filled(other)
+    before = other.read_bytes() if there else None
+    path.symlink_to(other)
+    with pytest.raises(InputError, match="is a link"):
+        journal(path)
+    assert (other.read_bytes() if there else None) == before
+    assert other.exists() is there
+
+
+def test_reading_a_journal_changes_nothing(tmp_path: Path) -> None:
+    """It may be that of a process that is writing half a line now."""
+    path = tmp_path / "j"
+    whole = filled(path)[:-5]
+    path.write_bytes(whole)
+    assert LineJournal(path, None, "test").entries == ENTRIES[:-1]
+    assert path.read_bytes() == whole

@@ -8,8 +8,9 @@ from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import Generation
-from beamopt.evolve.journal import Journal
 from beamopt.evolve.stopping import StopReason
+from beamopt.file_lock import locked
+from beamopt.folder import LOCK
 from beamopt.optimisation import optimize
 from beamopt.scene import Scene, load_scene
 from beamopt.timing import read_times
@@ -279,11 +280,11 @@ def test_nothing_but_air_is_a_result_that_says_so(tmp_path: Path) -> None:
 
 
 def test_another_processs_files_are_not_touched(tmp_path: Path) -> None:
-    """Only who holds the journal's lock writes, and only our own leftovers are cleared away."""
+    """Only who holds the folder's lock writes, and only our own leftovers are cleared away."""
     optimize(SCENE, tmp_path / "run", figures=False)
     for name in (".best.json.12.tmp", ".notes.tmp", ".mine.txt.1.tmp"):
         (tmp_path / "run" / name).write_text("x")
-    with Journal(tmp_path / "run" / "journal.jsonl"), pytest.raises(InputError, match="another"):
+    with locked(tmp_path / "run" / LOCK), pytest.raises(InputError, match="another process"):
         optimize(SCENE, tmp_path / "run", resume=True, figures=False)
     assert (tmp_path / "run" / ".best.json.12.tmp").exists()
     optimize(SCENE, tmp_path / "run", resume=True, figures=False)

@@ -18,8 +18,10 @@ import beamopt
 import femcheck
 from beamopt.evolve.algorithm import Individual
 from beamopt.model import Model
+from femcheck.accuracy.ending import Tried
 from femcheck.check.comparison import Tips
 from femcheck.continuation.ended import Ended
+from femcheck.models.beam import RodOnOutline
 from femcheck.models.reply import Reply
 from tests.femcheck.check.small import small_subject
 
@@ -147,7 +149,7 @@ def instances() -> dict[str, object]:
     question = femcheck.Question.of("x" * 1000, subject.design, options)
     ended = Ended(femcheck.Status.LIMIT_POINT, 1 / 3)
     reply = Reply(nan, (ended,) * 27)
-    nothing = "", femcheck.Ending.NOT_REACHED, reply, nan[:, 0], (), "reason " * 100
+    rod = Tried(RodOnOutline(), reply, 1 / 3)
     made = [
         *(getattr(scene, name) for name in type(scene).model_fields),
         scene, target, found, last, last.best, verdict, found.best, found.best.section, run,
@@ -160,6 +162,7 @@ def instances() -> dict[str, object]:
         beamopt.find_front(scene, ["L", "mass"], population=8),
         beamopt.refine_design(beamopt.optimize(quick).best, quick),
         beamopt.Outcome(run, verdict, 1 / 3, 1000, (1 / 3,) * 1000, 1 / 3),
+        beamopt.StudyOutcomes([beamopt.Outcome(run, verdict, 1 / 3, 1000, (1 / 3,), 1 / 3)] * 48),
         subject, compared, failure, options, question, reply,
         femcheck.CheckOptions(), femcheck.Mesher("x" * 1000), femcheck.SectionSizes(),
         femcheck.Checked(subject, femcheck.CheckOptions(), failure, *none),
@@ -167,7 +170,7 @@ def instances() -> dict[str, object]:
         femcheck.Prediction(subject, options, options.law_for(subject.design.actuator), failure,
                             None, {}, (), (None,) * 27, {}),
         femcheck.RigidSection(1 / 3, 1 / 3, 1 / 3), femcheck.Thread(1 / 3, 1 / 3),
-        femcheck.Within(question, 1 / 3, *nothing[1:3], *nothing[3:]),
+        femcheck.Within(question, 1 / 3, femcheck.Ending.REACHED, reply, nan[:, 0], (rod,), ""),
         femcheck.Chart.of(question, [], None),
     ]  # fmt: skip
     return {type(one).__name__: one for one in made}

@@ -5,8 +5,8 @@ import pytest
 
 from beamopt.bundled import bundled_scenes
 from beamopt.errors import InputError
-from beamopt.target import BaseFrame, read_target, tips_csv
-from beamopt.workspace import pressure_grid
+from beamopt.target import BaseFrame, read_target
+from beamopt.workspace import pressure_grid, tips_csv
 
 LEVELS = (0.0, 50.0, 100.0)
 DRAWN = bundled_scenes()["hand-drawn-workspace"].with_name("hand_drawn_workspace.csv")

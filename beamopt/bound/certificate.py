@@ -28,6 +28,11 @@ class BoundStatus(Enum):
     NOT_AN_ARC = "no bound: the tips of this scene's rod do not depend on a response matrix alone"
     NO_ROWS = "no bound: the target names no tips at given pressures"
 
+    @property
+    def is_bound(self) -> bool:
+        """True if L has a proven bound, whatever more work would add to it."""
+        return self in (BoundStatus.BOUNDED, BoundStatus.WORK_LIMIT)
+
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
@@ -41,6 +46,14 @@ class Certificate:
     proven : over the response matrices in a box; None where it was not asked for, as `ring`.
     ring : numerical, over what chambers in the scene's ring can have.
     seconds : time of each part.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> bound: beamopt.Certificate = beamopt.optimize(scene).bound
+    >>> bound.status.name
+    'BOUNDED'
     """
 
     status: BoundStatus
@@ -85,6 +98,13 @@ def certificate(
     callback : called with the part that goes on and the share of the work that is spent.
     most_work : tips of arcs to compute at most, half of them for the proof. Where that is not
         enough the bounds are what is known by then: valid, but lower than they could be.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("hand-drawn-workspace")
+    >>> beamopt.certificate(scene, scene.load_target())
+    <Certificate: found 65.58 mm², proven 65.52 mm², in the ring 65.58 mm²>
     """
     quick = quick_certificate(scene, target)
     wanted, response = quick.wanted, quick.response

@@ -16,9 +16,9 @@ from beamopt.chart.measure import (
     reference_of,
 )
 from beamopt.chart.methods import all_methods
-from beamopt.chart.workload import workload_of
+from beamopt.chart.workload import Workload, workload_of
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.plot.error_chart import Line, error_figure
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance, thread_settings
@@ -29,6 +29,8 @@ from beamopt.scene import Scene
 __all__ = ["Chart", "run_chart"]
 
 HEADER = "scene,method,resolution,error_mm,seconds,converged,of,status,ended"
+KIND = FolderKind("a chart of rods", "provenance.json", ("{",), goes_on=False)
+NAMES = ("chart.csv", "chart.svg", "chart.png", KIND.marker)
 BOUNDS = (1e-3, 1e-6)  # mm
 
 
@@ -89,22 +91,31 @@ def run_chart(
     InputError : `out` holds files, or can not be written; the scene has nothing to solve.
     """
     load, limits = workload_of(scene, seed), limits or Limits()
-    reference = reference_of(load)
-    claim_folder(out, "chart.csv", resume=False)
-    rows: list[Measured] = []
     chosen = all_methods(parents_on_grid()) if methods is None else methods
+    with claimed(out, KIND, resume=False):
+        chart = _measured(scene.name, load, chosen, limits, callback)
+        _write(chart, out, seed)
+    return chart
+
+
+def _measured(
+    name: str,
+    load: Workload,
+    methods: Sequence[Method],
+    limits: Limits,
+    callback: Callable[[Measured], None] | None,
+) -> Chart:
+    reference = reference_of(load)
+    rows: list[Measured] = []
     for measured in (
         measure_rungs(load, reference, limits),
-        *(measure_method(method, load, reference, limits) for method in chosen),
+        *(measure_method(method, load, reference, limits) for method in methods),
     ):
         for row in measured:
             rows.append(row)
             if callback is not None:
                 callback(row)
-    tolerance = load.model.tolerance
-    chart = Chart(scene.name, tuple(rows), tolerance, reference.uncertainty(rows))
-    _write(chart, out, seed)
-    return chart
+    return Chart(name, tuple(rows), load.model.tolerance, reference.uncertainty(rows))
 
 
 def _write(chart: Chart, out: Path, seed: int | None) -> None:
@@ -115,6 +126,7 @@ def _write(chart: Chart, out: Path, seed: int | None) -> None:
         )
         for row in chart.rows
     ]
+    clear_leftovers(out, NAMES)
     write_atomic(out / "chart.csv", csv_text(HEADER, cells))
     title = f"{chart.scene}: {chart.rows[0].of} tips, {_threads()}"
     figure = error_figure(_lines(chart), chart.tolerance, chart.uncertainty, title)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from beamopt.chart.journal import Journal
 from beamopt.chart.map_report import NAMES, write_map
 from beamopt.chart.sampling import METHODS, Sample, solve_sample
 from beamopt.errors import InputError
-from beamopt.folder import claim_folder, clear_leftovers
-from beamopt.study.pool import processes
+from beamopt.folder import FolderKind, claimed, clear_leftovers
+from beamopt.study.pool import in_process, processes
+from beamopt.study.work import Tasks, check_none_lost, solve_all
 
 __all__ = ["run_stability"]
 
 JOURNAL = "journal.jsonl"
+KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema":"beamopt-stability/',))
 
 
 def run_stability(
@@ -41,33 +43,40 @@ def run_stability(
     Raises
     ------
     InputError : `out` holds something else, or more samples, or can not be written.
+    NotComputedError : the processes of some samples died; all others are done.
     """
-    claim_folder(out, JOURNAL, resume=resume)
-    clear_leftovers(out, (JOURNAL, *NAMES))
-    journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
-    more = max(journal.samples, default=-1) + 1
-    if more > samples:
-        said = f"at least {more}, as the map there has; or name another folder"
-        raise InputError("--samples", "", samples, said)
-    missing = [index for index in range(samples) if index not in journal.samples]
-    for sample in _solved(seed, missing, methods, workers):
-        journal.add(sample)
-        if callback is not None:
-            callback(sample, len(journal.samples))
-    ordered = [journal.samples[index] for index in range(samples)]
-    write_map(out, ordered, seed, figures=figures)
-    journal.path.unlink()  # all of it stands in the tables
+    with claimed(out, KIND, resume=resume):
+        journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
+        clear_leftovers(out, (JOURNAL, *NAMES))
+        more = max(journal.samples, default=-1) + 1
+        if more > samples:
+            said = f"at least {more}, as the map there has; or name another folder"
+            raise InputError("--samples", "", samples, said)
+        _solve(journal, range(samples), seed, workers, methods, callback)
+        ordered = [journal.samples[index] for index in range(samples)]
+        write_map(out, ordered, seed, figures=figures)
+        journal.path.unlink()  # all of it stands in the tables
     return ordered
 
 
-def _solved(
-    seed: int, indices: Sequence[int], methods: Sequence[str], workers: int
-) -> Iterator[Sample]:
-    """Samples as they come."""
-    if workers == 1:
-        yield from (solve_sample(seed, index, methods) for index in indices)
-        return
-    with processes(workers) as executor:
-        futures = [executor.submit(solve_sample, seed, index, methods) for index in indices]
-        for future in as_completed(futures):
-            yield future.result()
+def _solve(
+    journal: Journal,
+    samples: Sequence[int],
+    seed: int,
+    workers: int,
+    methods: Sequence[str],
+    callback: Callable[[Sample, int], None] | None,
+) -> None:
+    """Solve the samples that the journal does not have."""
+    missing = [index for index in samples if index not in journal.samples]
+    work = Tasks(solve_sample, {index: (seed, index, methods) for index in missing})
+
+    def keep(_: int, sample: Sample | None) -> None:
+        if sample is None:
+            return
+        journal.add(sample)
+        if callback is not None:
+            callback(sample, len(journal.samples))
+
+    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
+    check_none_lost(work, "--resume solves samples again")

@@ -5,19 +5,46 @@ from __future__ import annotations
 import io
 import os
 import sys
+from collections.abc import Callable, Sequence
+from typing import NoReturn
 
-__all__ = ["main", "prepare"]
+__all__ = ["main", "prepare", "run_and_leave"]
 
 
 def prepare() -> None:
-    """Pin threads before numpy is loaded, and let any terminal take any text."""
+    """Pin threads before numpy is loaded, let any terminal take any text, and heed signals."""
+    from beamopt.cli.signals import heed_signals
     from beamopt.provenance import THREAD_SETTINGS
 
     for name in THREAD_SETTINGS:  # small matrices gain nothing from threads
         os.environ.setdefault(name, "1")
+    _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):  # a terminal that has no "²" still gets an answer
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
+    heed_signals()
+
+
+def _open_closed_streams() -> None:
+    """Let what is written to a closed stream go nowhere, and no file open in its place."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
+
+
+def run_and_leave(run: Callable[[Sequence[str]], int]) -> NoReturn:
+    """Run a command with the process's arguments and end the process with its exit code."""
+    code = run(sys.argv[1:])
+    try:
+        sys.stdout.flush()
+    except OSError:  # said by `run`; the interpreter is not to try, and complain, again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)
 
 
 def main() -> None:
@@ -25,4 +52,4 @@ def main() -> None:
     prepare()
     from beamopt.cli.application import run
 
-    sys.exit(run(sys.argv[1:]))
+    run_and_leave(run)

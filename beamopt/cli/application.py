@@ -39,6 +39,12 @@ def about(
 
 
 SceneName = Annotated[str, typer.Argument(help="Scene file, or the name of a bundled scene.")]
+DesignName = Annotated[
+    str,
+    typer.Argument(
+        metavar="DESIGN|RUN|SCENE", help="Design file, run folder, or scene: its target's section."
+    ),
+]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed; replaces the scene's.")]
 Workers = Annotated[int, typer.Option(min=1, max=256, help="Sections judged at once.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
@@ -72,7 +78,7 @@ def optimize(
 @app.command()
 def refine(
     subject: Annotated[
-        Path, typer.Argument(metavar="RUN|DESIGN", help="Run folder, or design file.")
+        Path, typer.Argument(metavar="RUN|DESIGN|SCENE", help="Run folder, design file, or scene.")
     ],
     scene: Annotated[str | None, typer.Option(help="For a design file: target and rules.")] = None,
     out: Annotated[Path | None, typer.Option(help="For a design file; NAME-refined.")] = None,
@@ -134,9 +140,7 @@ def pareto(
 
 @app.command()
 def tips(
-    design: Annotated[
-        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
-    ],
+    design: DesignName,
     pressures: Annotated[
         list[str] | None,
         typer.Option(metavar="P1,P2,P3", help="One combination in kPa; repeat for more."),
@@ -153,9 +157,7 @@ def tips(
 
 @app.command()
 def reach(
-    design: Annotated[
-        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
-    ],
+    design: DesignName,
     path: Annotated[
         Path, typer.Argument(metavar="PATH.csv", help="Trajectory: a poly-line x,y,z in mm.")
     ],
@@ -173,25 +175,24 @@ def reach(
 
 @app.command()
 def show(
-    design: Annotated[
-        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
-    ],
+    design: DesignName,
     out: Annotated[
         Path | None,
         typer.Option(help="Figure to write (.png, .svg, .pdf); NAME.png here if left out."),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no such figure.")
+    ] = False,
 ) -> None:
     """Draw a design's section beside its workspace, and the section in the terminal."""
     from beamopt.cli.show import show_command
 
-    show_command(design, out)
+    show_command(design, out, force=force)
 
 
 @app.command()
 def export(
-    design: Annotated[
-        Path, typer.Argument(metavar="DESIGN|RUN", help="Design file or run folder.")
-    ],
+    design: DesignName,
     out: Annotated[Path | None, typer.Option(help="Folder; NAME-export here if left out.")] = None,
     formats: Annotated[
         str | None,

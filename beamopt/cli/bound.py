@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import nullcontext
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,8 @@ from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound.work import MOST_WORK
-from beamopt.bound_folder import claim_bound_folder, write_bound
+from beamopt.bound_folder import claimed_for_bound, write_bound
+from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, work_progress
 from beamopt.design import load_design
@@ -28,9 +30,9 @@ from beamopt.overrides import overridden
 from beamopt.scene import Pressures, Scene, load_scene
 from beamopt.scene_text import scene_text
 from beamopt.table import Table, read_table
-from beamopt.target import COLUMNS, ONLY_OF_POINTS, SAME_PRESSURE, Target
+from beamopt.target import ONLY_OF_POINTS, SAME_PRESSURE, Target
 from beamopt.target_choice import TargetChoice
-from beamopt.workspace import pressure_grid
+from beamopt.workspace import COLUMNS, pressure_grid
 
 __all__ = ["bound_command", "gap_text"]
 
@@ -56,15 +58,15 @@ def bound_command(
         raise InputError("--work", "", work, "a finite number of million tips above 0")
     scene, notes, assumed = _scene_of(subject, overrides)
     target = scene.load_target()
-    if out is not None:
-        claim_bound_folder(out, scene)
-    with work_progress() as callback:
-        found = certificate(scene, target, callback, MOST_WORK if work is None else 1e6 * work)
-    if out is not None:
-        write_bound(out, scene, target, found, assumed)
+    with nullcontext() if out is None else claimed_for_bound(out, scene):
+        with work_progress() as callback:
+            found = certificate(scene, target, callback, MOST_WORK if work is None else 1e6 * work)
+        if out is not None:
+            write_bound(out, scene, target, found, assumed)
     for note in (*notes, *target.warnings):
         console.print(f"[yellow]note[/]: {note}", soft_wrap=True)
     _report(scene, target, found, out)
+    end_with(ExitCode.HOLDS if found.status.is_bound else ExitCode.NOT_COMPUTED)
 
 
 def _scene_of(

@@ -7,24 +7,23 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.progress import console
-from beamopt.design import load_design
 from beamopt.export.run import ExportOptions, export_design
-from beamopt.folder import design_file
+from beamopt.named import named_design
 
 __all__ = ["export_command"]
 
 
 def export_command(
-    path: Path, out: Path | None, formats: str | None, cap: float, tolerance: float | None
+    source: str, out: Path | None, formats: str | None, cap: float, tolerance: float | None
 ) -> None:
     """Write a design, or the best design of a run, as solids and drawings."""
     named = None
     if formats is not None:
         named = tuple(dict.fromkeys(part.strip() for part in formats.split(",")))
     options = ExportOptions(named, cap, tolerance)
-    is_run = path.is_dir()
-    design = load_design(design_file(path))
-    name = path.resolve().name if is_run else path.resolve().stem
+    _, design = named_design(source)
+    path = Path(source).resolve()
+    name = path.name if path.is_dir() else path.stem
     exported = export_design(design, name, out or Path(f"{name}-export"), options)
     for note in exported.notes:
         typer.echo(f"note: {note}", err=True)

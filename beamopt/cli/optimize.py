@@ -11,6 +11,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
@@ -73,7 +74,7 @@ def optimize_command(
         console.print(f"go on with: beamopt optimize {asked} --out {folder} --resume", markup=False)
         raise KeyboardInterrupt
     if result.verdict.status is not Status.JUDGED:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
 def _report(result: Optimisation, folder: Path) -> None:

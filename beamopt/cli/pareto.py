@@ -10,6 +10,7 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.bound import gap_text
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
@@ -70,7 +71,7 @@ def pareto_command(
         console.print(said, soft_wrap=True, markup=False)
         raise KeyboardInterrupt
     if not front.designs:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
 def _ignored(scene: Scene) -> list[str]:

@@ -9,11 +9,11 @@ from pathlib import Path
 import typer
 from rich.table import Table
 
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.folder import design_file
+from beamopt.named import named_design
 from beamopt.reach.reach import Reach, ReachStatus, reach
 from beamopt.result_tables import paths_csv
 from beamopt.trajectory import read_path
@@ -21,14 +21,12 @@ from beamopt.trajectory import read_path
 __all__ = ["reach_command"]
 
 
-def reach_command(
-    design_path: Path, path: Path, as_csv: bool, tolerance: float, step: float
-) -> None:
+def reach_command(source: str, path: Path, as_csv: bool, tolerance: float, step: float) -> None:
     """Print the pressures that bring a design's tip along a trajectory."""
     for name, value in (("--tolerance", tolerance), ("--step", step)):
         if not 0 < value < math.inf:
             raise InputError(name, "", value, "a finite number of mm above 0")
-    design = load_design(design_file(design_path))
+    _, design = named_design(source)
     points = read_path(path, design.actuator.length, step)
     low, _, high = design.pressures
     found = reach(design.climb.model, design.values, points, low, high)
@@ -42,7 +40,7 @@ def reach_command(
     if outside:
         said = f"{outside} of {len(points)} points are not reached within {tolerance:g} mm"
         typer.echo(f"beamopt: {said} at {low:g} … {high:g} kPa", err=True)
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
 def _print_table(path: Path, found: Reach, statuses: tuple[ReachStatus, ...]) -> None:

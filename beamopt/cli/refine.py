@@ -10,18 +10,20 @@ import typer
 
 from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.cli.bound import gap_text
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
-from beamopt.folder import claim_folder
+from beamopt.folder import claimed
 from beamopt.input_file import read_json
+from beamopt.named import is_scene, named_design
 from beamopt.old_wordings import OLD_STOP_REASONS
 from beamopt.optimisation import optimize
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refinement import Refinement, refine_design
-from beamopt.refinement_folder import write_refined_design
+from beamopt.refinement_folder import KIND, write_refined_design
 from beamopt.result import EarlierRefinement
 from beamopt.scene import Scene, load_scene
 
@@ -32,7 +34,7 @@ def refine_command(
     subject: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
 ) -> None:
     """Refine the best design of a run, or a design for a scene; say what that came to."""
-    if subject.is_dir():
+    if subject.is_dir() and not is_scene(str(subject)):
         scene, found, bound, there = _refined_run(subject, scene_name, out, overrides)
         folder = subject
     else:
@@ -50,7 +52,7 @@ def refine_command(
     for name, text in (*lines, ("files", f"{folder}/ ({', '.join(files)}, …)")):
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
     if found.refined.status is RefineStatus.NOT_JUDGED:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
     say_findings(load_design(folder / "refined.json"))
 
 
@@ -98,17 +100,17 @@ def _ended(summary: Mapping[str, object]) -> StopReason | None:
 def _refined_file(
     file: Path, scene_name: str | None, out: Path | None, overrides: Sequence[str]
 ) -> tuple[Scene, Refinement, Certificate, Path]:
-    design = load_design(file)
+    _, design = named_design(file)
     if scene_name is None:
         said = "must name a scene: its target and rules are what the design is refined for"
         raise InputError("--scene", "", None, said)
     scene = load_scene(scene_name, overrides)
     target = scene.load_target()
     folder = out or Path(f"{file.stem}-refined")
-    claim_folder(folder, "refined.json", resume=False)
-    with stages_shown(scene) as show:
-        found = refine_design(design, scene, target, show)
-    write_refined_design(folder, scene, target, found)
+    with claimed(folder, KIND, resume=False):
+        with stages_shown(scene) as show:
+            found = refine_design(design, scene, target, show)
+        write_refined_design(folder, scene, target, found)
     return scene, found, quick_certificate(scene, target), folder
 
 

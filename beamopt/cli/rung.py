@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.climb import Climb
-from beamopt.design import load_design
-from beamopt.folder import design_file
+from beamopt.named import is_scene, named_design
 from beamopt.rod.ladder import Rung
 from beamopt.scene import load_scene
 
@@ -25,9 +22,8 @@ def rung_command(subject: str, overrides: list[str]) -> None:
 
 
 def _climb(subject: str, overrides: list[str]) -> Climb:
-    path = Path(subject)
-    if path.is_dir() or path.suffix == ".json":
-        design = load_design(design_file(path))
-        say_findings(design)
-        return design.climb
-    return load_scene(subject, overrides).climb
+    if is_scene(subject):
+        return load_scene(subject, overrides).climb
+    _, design = named_design(subject)
+    say_findings(design)
+    return design.climb

@@ -10,9 +10,10 @@ from rich.text import Text
 
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.design import Design, load_design
+from beamopt.design import Design
 from beamopt.errors import InputError
-from beamopt.folder import design_file
+from beamopt.files import check_replaceable
+from beamopt.named import is_scene, named_design
 from beamopt.plot.figures import design_figure, design_title
 from beamopt.plot.section import OUTSIDE, section_pixels
 from beamopt.plot.style import TYPE_COLOURS, save_figure
@@ -22,21 +23,23 @@ from beamopt.target import Target, read_target
 
 __all__ = ["show_command"]
 
+MADE_BY = "beamopt show"
 ENDINGS = (".png", ".svg", ".pdf")
 WIDTH = 56  # characters of the picture in the terminal
 SYMBOLS = "·123 "
 
 
-def show_command(path: Path, out: Path | None) -> None:
+def show_command(source: str, out: Path | None, *, force: bool = False) -> None:
     """Draw a design, or the best design of a run over its target."""
-    file = design_file(path)
+    path = Path(source)
     figure_path = out or Path(f"{path.resolve().stem}.png")
     if figure_path.suffix.lower() not in ENDINGS:
         raise InputError("--out", "", str(figure_path), f"must end in {', '.join(ENDINGS)}")
-    design = load_design(file)
-    target = _target(path, design) if path.is_dir() else None
-    figure = design_figure(design, target, design_title(design) or file.stem)
-    save_figure(figure, figure_path)
+    check_replaceable(figure_path, MADE_BY, MADE_BY, force=force)
+    name, design = named_design(source)
+    target = _target(path, design) if path.is_dir() and not is_scene(source) else None
+    figure = design_figure(design, target, design_title(design) or name)
+    save_figure(figure, figure_path, made_by=MADE_BY)
     console.print(_terminal_picture(design.section))
     legend = Text("material ", style="dim")
     for supply, colour in enumerate(TYPE_COLOURS[1:], 1):

@@ -33,7 +33,16 @@ class Stage(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Individual:
-    """A genotype and what became of it."""
+    """A genotype and what became of it.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=0"]))
+    >>> individual: beamopt.Individual = found.history[-1].best_ever
+    >>> individual.verdict.L == found.verdict.L
+    True
+    """
 
     points: FeaturePoints
     verdict: Verdict
@@ -52,6 +61,14 @@ class Generation:
     best : the one with the lowest L + R in this population; without rules the paper's metric.
     best_ever : the one with the lowest L + R of all that were judged so far.
     rejected : how many so far could not be judged or may not be made, by reason.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=1"]))
+    >>> last: beamopt.Generation = found.history[-1]
+    >>> last.index, last.evaluations
+    (1, 38)
     """
 
     index: int
@@ -79,6 +96,16 @@ class GeneticAlgorithm:
 
         while ...:
             record = search.tell(judge(search.ask()))
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section")
+    >>> judge = scene.judge(scene.load_target())
+    >>> search = beamopt.GeneticAlgorithm(scene)
+    >>> generation = search.tell(judge(search.ask()))
+    >>> search.evaluations
+    20
     """
 
     def __init__(self, scene: Scene, improvement: Improvement | None = None) -> None:

@@ -11,14 +11,13 @@ from __future__ import annotations
 import json
 import math
 import os
-import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from weakref import WeakSet
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
+from beamopt.files import naming, refuse_link
 from beamopt.input_file import check_regular
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import with_digest, without_digest
@@ -34,38 +33,22 @@ HEADERS = {HEADER.decode().rstrip(): True, WITHOUT_DIGESTS.decode().rstrip(): Fa
 
 FAILURES = {status.name for status in Status if status is not Status.JUDGED}
 
-LOCK_PATIENCE = 2.0  # s; a process that was just killed may still be letting go
-
-
-_OPEN: WeakSet[Journal] = WeakSet()
-
-
-def _let_go() -> None:
-    """In a forked child: a worker that outlives its parent must not keep the parent's locks."""
-    for journal in _OPEN:
-        journal.close()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_let_go)
-
 
 class Journal:
-    """A journal file, open for going on; use it as a context.
+    """A journal file, open for going on; use it as a context, in a folder that is claimed.
 
     Raises
     ------
-    InputError : a whole line of the file is not what this search would have written there.
+    InputError : the file is no journal of a search, or a link.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        refuse_link(path)
         if path.exists():
             check_regular(path, None)  # opening a pipe would wait; a journal may be of any size
         self._stream = path.open("ab")
-        _OPEN.add(self)
         try:
-            self._lock()
             self._lines = self._whole_lines()
             if not self._lines:
                 self._append(HEADER)
@@ -86,30 +69,13 @@ class Journal:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        os.fsync(self._stream.fileno())
-        self.close()
+        with naming(self.path):
+            os.fsync(self._stream.fileno())
+            self.close()
 
     def close(self) -> None:
-        """Let go of the file, and of its lock if no other process holds it too."""
+        """Let go of the file."""
         self._stream.close()
-
-    def _lock(self) -> None:
-        """Keep a second process from writing to the same journal, where the system can."""
-        try:
-            import fcntl
-        except ImportError:
-            return
-        patience = time.monotonic() + LOCK_PATIENCE
-        while True:
-            try:
-                fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                if time.monotonic() > patience:
-                    said = "another process is writing this run"
-                    raise InputError(self.path, "", None, said) from None
-                time.sleep(0.05)
-            else:
-                return
 
     def _whole_lines(self) -> list[str]:
         """The lines of the file as it stands, after cutting off a last one that has no end."""
@@ -135,6 +101,7 @@ class Journal:
                     "cut the file off before the line to judge what follows again",
                 )
             yield verdicts
+        del self._lines[1:-1]  # those of a long search would fill the memory
 
     @property
     def last_generation(self) -> int:
@@ -163,8 +130,9 @@ class Journal:
             return ""
 
     def _append(self, line: bytes) -> None:
-        self._stream.write(line)
-        self._stream.flush()
+        with naming(self.path):
+            self._stream.write(line)
+            self._stream.flush()
 
 
 def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:

@@ -63,6 +63,14 @@ def run(
     Raises
     ------
     InputError : the journal is not this search's, or goes beyond a reason to stop.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
+    >>> ended = beamopt.run(scene, scene.judge(scene.load_target()))
+    >>> ended.status.name
+    'GENERATIONS'
     """
     improvement = Improvement(judge, scene) if scene.search.improved_share > 0 else None
     search = GeneticAlgorithm(scene, improvement)

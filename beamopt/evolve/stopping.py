@@ -13,7 +13,14 @@ __all__ = ["StopReason", "why_stop"]
 
 
 class StopReason(Enum):
-    """How a search ended; the value is the text shown to people."""
+    """How a search ended; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.StopReason.SECONDS.goes_on
+    True
+    """
 
     GENERATIONS = "all generations done"
     EVALUATIONS = "the evaluations allowed are used up"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from beamopt.design import Design
@@ -17,7 +17,7 @@ from beamopt.export.step import NEEDS_GMSH, is_installed, require_gmsh, step_tex
 from beamopt.export.stl import stl_bytes
 from beamopt.export.svg import svg_text
 from beamopt.files import json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.input_file import read_json
 from beamopt.outline.build import build_outline
 from beamopt.outline.ring import usual_sagitta
@@ -28,6 +28,7 @@ __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
 FORMATS = ("step", "stl", "svg", "dxf")
 THICKEST, COARSEST = 1000.0, 1.0  # mm
 MARKER = "export.json"
+KIND = FolderKind("an export", MARKER, ('{"schema":"beamopt-export/',))
 FILES = {
     "body.step": "step",
     "mould.step": "step",
@@ -107,6 +108,16 @@ def export_design(
     """
     options = options or ExportOptions()
     formats, left_out = _formats(options)
+    with claimed(folder, KIND, resume=True):
+        _check_owner(folder, name)
+        exported = _exported(design, name, folder, options, formats)
+    return replace(exported, notes=(*left_out, *exported.notes))
+
+
+def _exported(
+    design: Design, name: str, folder: Path, options: ExportOptions, formats: tuple[str, ...]
+) -> Exported:
+    """Compute everything, then write it."""
     grid, length = design.grid.build(), design.actuator.length
     sagitta, outline = usual_sagitta(grid), design.outline
     if options.tolerance is not None:
@@ -117,7 +128,6 @@ def export_design(
     body = body_solids(faces, length, options.cap)
     mould = mould_solids(faces, grid, length, sagitta, options.base_thickness)
     drawing = section_drawing(design, faces, name, sagitta, options.cap)
-    _check_owner(folder, name)
     strict = options.formats is not None
     files, failed = _contents(drawing, body, mould, formats, all_or_none=strict)
     record = export_record(
@@ -132,8 +142,7 @@ def export_design(
     )
     _write(folder, files, json_text(record))
     sizes = tuple((file, len(content)) for file, content in files.items())
-    notes = notes_on(design, drawing, sagitta, findings)
-    return Exported(folder, sizes, (*left_out, *failed, *notes))
+    return Exported(folder, sizes, (*failed, *notes_on(design, drawing, sagitta, findings)))
 
 
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -151,8 +160,7 @@ def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _check_owner(folder: Path, name: str) -> None:
-    """Take the folder, unless it holds anything but an earlier export of the same name."""
-    claim_folder(folder, MARKER, resume=True)
+    """Refuse a folder with the export of another name, or another version's."""
     there = folder / MARKER
     if not there.exists():
         return

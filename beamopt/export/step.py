@@ -6,7 +6,6 @@ import json
 import re
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 from beamopt.errors import InputError
 from beamopt.export.bodies import Solid
 from beamopt.export.faces import Contour
+from beamopt.scratch import scratch_folder
 
 __all__ = ["NEEDS_GMSH", "is_installed", "require_gmsh", "step_text"]
 
@@ -56,8 +56,8 @@ def step_text(solids: Sequence[Solid], title: str, seconds: float = SECONDS) -> 
     InputError : gmsh is not installed, fails, or does not end within `seconds`.
     """
     require_gmsh()
-    with tempfile.TemporaryDirectory(prefix="beamopt-") as folder:
-        file = Path(folder) / "solids.step"
+    with scratch_folder() as folder:
+        file = folder / "solids.step"
         volumes = _run([_plain(solid) for solid in solids], file, seconds)
         for solid, volume in zip(solids, volumes, strict=True):
             if abs(volume - solid.volume) > VOLUME_TOLERANCE * solid.volume:

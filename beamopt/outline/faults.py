@@ -11,7 +11,14 @@ __all__ = ["Fault", "FaultKind", "Severity", "summaries", "worst_first"]
 
 
 class Severity(Enum):
-    """How much a fault matters."""
+    """How much a fault matters.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> [severity.name for severity in beamopt.Severity]
+    ['NOTICE', 'VIOLATION', 'FATAL']
+    """
 
     NOTICE = "worth knowing"
     VIOLATION = "breaks a rule, but a solid can be made of it"
@@ -19,7 +26,14 @@ class Severity(Enum):
 
 
 class FaultKind(Enum):
-    """What is wrong; the values are meant for people."""
+    """What is wrong; the values are meant for people.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.FaultKind.ISLAND.severity.name
+    'NOTICE'
+    """
 
     SKIN = "skin too thin"
     WALL = "wall between two supplies too thin"
@@ -69,6 +83,12 @@ class Fault:
     supplies : the supplies that it concerns, ascending.
     asked : the thickness that the rules ask for [mm], or None.
     drawn : number of the drawn chamber in the design's `drawing`, or None.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> print(beamopt.Fault(beamopt.FaultKind.SKIN, 0.4, (12.0, 0.0), (1,), asked=1.0))
+    skin over supply 1 is 0.400 mm at (12.0, 0.0) mm, asked 1
     """
 
     status: FaultKind

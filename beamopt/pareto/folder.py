@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
 from pathlib import Path
 
 from beamopt.bound_folder import bound_summary
 from beamopt.design import Design
 from beamopt.files import csv_text, json_text, write_atomic, write_changed
-from beamopt.folder import clear_leftovers
+from beamopt.folder import FolderKind, clear_leftovers
 from beamopt.judge import Judge, Status
-from beamopt.kept_scene import scene_to_keep
+from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
 from beamopt.pareto.front import Front
 from beamopt.pareto.scores import BEST, OBJECTIVES
 from beamopt.provenance import provenance
@@ -17,14 +19,20 @@ from beamopt.scene import Scene
 from beamopt.scene_text import scene_text
 from beamopt.timing import write_times
 
-__all__ = ["JOURNAL", "begin_folder", "front_csv", "write_front"]
+__all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
 
-JOURNAL = "journal.jsonl"
+KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
+DESIGN = re.compile(r"\bfront-\d{3,}\.json\b")
+NAMES = (
+    *(KIND.marker, "scene.toml", *SOURCES.values(), *PATHS, "front-*.json", "front.csv"),
+    *("history.csv", "summary.json", *FIGURES, "timing.csv", "provenance.json"),
+)
 
 
 def begin_folder(folder: Path, scene: Scene) -> None:
     """Keep the question beside the journal: the scene, and copies of its target's files."""
+    clear_leftovers(folder, NAMES)
     kept, sources = scene_to_keep(scene)
     for name, content in sources.items():
         write_changed(folder / name, content)
@@ -36,14 +44,12 @@ def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = Tru
 
     What is there already stays as it is, the times too where nothing else changes.
     """
-    clear_leftovers(folder, None)
-    designs = {k: _design(front, k) for k in front.worth_keeping()}
-    names = {k: f"front-{k:03d}.json" for k in designs}
-    for old in folder.glob("front-*.json"):
-        if old.name not in names.values():
-            old.unlink()
-    texts = {names[k]: design.json() for k, design in designs.items()}
-    texts["front.csv"] = front_csv(front, judge, designs, names)
+    designs = _designs(front)
+    names = {k: _name(k) for k in designs}
+    _delete_designs(folder, names.values())
+    # the table before the designs: a kill leaves none that it does not name
+    texts = {"front.csv": front_csv(front, judge)}
+    texts |= {names[k]: design.json() for k, design in designs.items()}
     texts["history.csv"] = _history_csv(front)
     texts["summary.json"] = json_text(_summary(front))
     new = [name for name, text in texts.items() if write_changed(folder / name, text)]
@@ -56,18 +62,37 @@ def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = Tru
         write_atomic(folder / "provenance.json", json_text(made))
 
 
-def front_csv(front: Front, judge: Judge, designs: dict[int, Design], names: dict[int, str]) -> str:
+def _delete_designs(folder: Path, wanted: Collection[str]) -> None:
+    """Delete the designs that the table in the folder names, and that are not `wanted` now."""
+    table = folder / "front.csv"
+    if not table.exists():
+        return
+    named = set(DESIGN.findall(table.read_text(encoding="utf-8", errors="replace")))
+    for name in named.difference(wanted):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _designs(front: Front) -> dict[int, Design]:
+    """Designs that get a file, by their places on the front."""
+    return {k: _design(front, k) for k in front.worth_keeping()}
+
+
+def _name(k: int) -> str:
+    return f"front-{k:03d}.json"
+
+
+def front_csv(front: Front, judge: Judge) -> str:
     """A row a design, by L: losses [mm²], ratio, mass [g], chambers per supply, its file if any.
 
     Of sealed designs that are kept also the L of the outline, which is what they are.
     """
-    sealed = front.scene.seal.rules.sealed
+    sealed, designs = front.scene.seal.rules.sealed, _designs(front)
     header = "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"
     rows = []
     for k, one in enumerate(front.designs):
         score, losses = one.score, one.score.verdict
         numbers = losses.L, losses.K, losses.R, score.ratio, score.mass
-        row: list[object] = [k, *numbers, *score.chambers, names.get(k)]
+        row: list[object] = [k, *numbers, *score.chambers, _name(k) if k in designs else None]
         if sealed:
             row.append(judge.loss_of(designs[k].values) if k in designs else None)
         rows.append(row)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
 from beamopt.scene import Scene
 from beamopt.timing import Timing
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Front"]
 
@@ -36,6 +40,14 @@ class Front:
     rejected : how many could not be judged or may not be made, by reason.
     timing : of the sections that were judged now.
     bound : how low L can be, whatever the section, or why that is not known.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> front: beamopt.Front = beamopt.find_front(scene, ["L", "mass"], population=8)
+    >>> bool((front.values[1:, 0] > front.values[:-1, 0]).all())
+    True
     """
 
     status: StopReason
@@ -101,6 +113,13 @@ class Front:
         shown -= shown.min(axis=0)
         spread = shown.max(axis=0)
         return np.asarray((shown / np.where(spread > 0, spread, 1.0)).sum(axis=1))
+
+    def to_frame(self) -> DataFrame:
+        """Losses, masses and chambers of the front's designs, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from beamopt.pareto.folder import front_csv
+
+        return frame_of(front_csv(self, self.scene.judge(self.scene.load_target())))
 
     def worth_keeping(self) -> list[int]:
         """Places of at most 30 designs along the front: best of each objective, knee, others."""

@@ -14,10 +14,10 @@ from beamopt.bound.certificate import quick_certificate
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.evolve.variation import Variation
-from beamopt.file_lock import locked
-from beamopt.folder import claim_folder
+from beamopt.folder import claimed
+from beamopt.generation_size import check_generation
 from beamopt.judge import in_parts
-from beamopt.pareto.folder import JOURNAL, begin_folder, write_front
+from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.scores import Score, scored
@@ -64,8 +64,16 @@ def find_front(
     InputError : the target, or the folder or journal to go on with, can not be used; the search
         there has more generations than are asked for; or another process is writing to it.
     ImportError : pymoo is not installed.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> beamopt.find_front(scene, ["L", "mass"], population=8).evaluations
+    8
     """
-    scene.check_memory("population", population, population)
+    points, elements = scene.section.feature_points, scene.grid.radial * scene.grid.angular
+    check_generation("population", population, population, points, elements)
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()
     judge = scene.judge(target)
@@ -74,9 +82,8 @@ def find_front(
     with ExitStack() as held:
         journal = None
         if folder is not None:
-            claim_folder(folder, JOURNAL, resume=resume)
-            held.enter_context(locked(folder / JOURNAL))
-            journal = FrontJournal(folder / JOURNAL, scene, objectives, population)
+            held.enter_context(claimed(folder, KIND, resume=resume))
+            journal = FrontJournal(folder / KIND.marker, scene, objectives, population)
             _check_length(journal, scene)
         history: list[FrontNumbers] = []
         judged = partial(scored, judge)

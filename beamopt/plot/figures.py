@@ -45,6 +45,12 @@ def design_figure(
 
     Backbones are coloured by pressure: supply 1 red, 2 green, 3 blue. Beside a target without a
     workspace stand the design's tips at the target's pressures; trajectories with what is reached.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> design = beamopt.load_design(str(beamopt.load_scene("sealed-section").target.file))
+    >>> beamopt.design_figure(design).savefig("design.png")
     """
     wanted = target if isinstance(target, Target) or target is None else Target.of_workspace(target)
     figure = new_figure(13.0, 5.6, below=0.1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -54,6 +54,8 @@ SERIES_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#8a5aa8")
 BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
 """Where a legend stands that would cover what is drawn."""
 
+TICK = r"$\mathdefault"  # how labels of ticks begin, which are formulas
+
 _RC: Any = {
     "svg.hashsalt": "beamopt",
     "font.size": 9.0,
@@ -68,14 +70,29 @@ _RC: Any = {
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Let a function draw in the project's style, without changing the caller's settings."""
+    """Let a function draw in the project's style, without changing the caller's settings.
+
+    Names of files and scenes stand in the figure as they are: no text is a formula.
+    """
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with _our_settings():
-            return draw(*args, **kwargs)
+            figure = draw(*args, **kwargs)
+        _show_as_they_are(figure)
+        return figure
 
     return drawn
+
+
+def _show_as_they_are(figure: Figure) -> None:
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        said = text.get_text()
+        if said and not said.startswith(TICK):
+            text.set_parse_math(False)
+            text.set_text("".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in said))
 
 
 def _our_settings() -> AbstractContextManager[None]:
@@ -91,7 +108,17 @@ def new_figure(width: float, height: float, below: float = 0.0) -> Figure:
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     layout = ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below))
-    return Figure(figsize=(width, height), layout=layout)
+    figure = Figure(figsize=(width, height), layout=layout)
+    vars(figure)["_repr_png_"] = partial(_shown, figure)
+    return figure
+
+
+def _shown(figure: Figure) -> bytes:
+    """The figure as notebooks show it; they know by themselves those of pyplot only."""
+    stream = io.BytesIO()
+    with _our_settings():
+        figure.savefig(stream, format="png", dpi=100)
+    return stream.getvalue()
 
 
 def log_losses(axes: Axes, losses: FloatArray) -> None:
@@ -108,23 +135,29 @@ def count_generations(axes: Axes) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
 
 
-def save_figure(figure: Figure, *paths: Path) -> None:
-    """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes."""
-    contents = figure_bytes(figure, *(path.suffix.lower()[1:] for path in paths))
+def save_figure(figure: Figure, *paths: Path, made_by: str | None = None) -> None:
+    """Write a figure by each path's ending (.svg, .png, .pdf); the same one, the same bytes.
+
+    made_by : what the file says that it was made by; matplotlib if left out.
+    """
+    endings = (path.suffix.lower()[1:] for path in paths)
+    contents = figure_bytes(figure, *endings, made_by=made_by)
     for path, content in zip(paths, contents, strict=True):
         write_atomic(path, content)
 
 
-def figure_bytes(figure: Figure, *endings: str) -> list[bytes]:
+def figure_bytes(figure: Figure, *endings: str, made_by: str | None = None) -> list[bytes]:
     """A figure as files of each ending (svg, png, pdf) hold it; the same one, the same bytes."""
     dateless: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    maker = {"png": "Software", "svg": "Creator", "pdf": "Creator"}
     contents = []
     with _our_settings():
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # laid out now, once for all endings
         for ending in endings:
             stream = io.BytesIO()
-            figure.savefig(stream, format=ending, dpi=150, metadata=dateless.get(ending, {}))
+            about = dateless.get(ending, {}) | ({maker[ending]: made_by} if made_by else {})
+            figure.savefig(stream, format=ending, dpi=150, metadata=about)
             contents.append(stream.getvalue())
     return contents
 

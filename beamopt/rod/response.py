@@ -14,7 +14,16 @@ __all__ = ["LinearResponse", "Response", "linear_response"]
 
 
 class Response(Protocol):
-    """Whatever turns pressures into the rest strains of a uniform, torsion-stiff rod."""
+    """Whatever turns pressures into the rest strains of a uniform, torsion-stiff rod.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> import numpy as np
+    >>> response: beamopt.Response = beamopt.LinearResponse(np.eye(3))
+    >>> response.strains(np.zeros((27, 3))).shape
+    (27, 3)
+    """
 
     def strains(self, pressures: FloatArray) -> FloatArray:
         """Strains (…, n, 3) = (ε, κ1, κ2) [1, 1/mm, 1/mm] at the pressures (n, 3) [kPa].
@@ -31,6 +40,14 @@ class LinearResponse:
 
     matrix : B (…, 3, 3) [1/kPa; 1/(mm·kPa) in rows 1 and 2], a column a supply; leading axes are
         a batch of sections.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> import numpy as np
+    >>> response = beamopt.LinearResponse(np.eye(3) / 1000)
+    >>> response.strains(np.array([[10.0, 0.0, 0.0]])).tolist()
+    [[0.01, 0.0, 0.0]]
     """
 
     matrix: FloatArray
@@ -59,6 +76,13 @@ def linear_response(moments: Moments, youngs_modulus: float) -> LinearResponse:
     Returns
     -------
     LinearResponse : with a matrix (…, 3, 3), NaN for a section without material.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> section = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=0"]))
+    >>> beamopt.linear_response(section.best.moments, youngs_modulus=300.0).matrix.shape
+    (3, 3)
     """
     (i11, i12), (_, i22) = np.moveaxis(moments.second_moments, (-2, -1), (0, 1))
     sx, sy = np.moveaxis(moments.chamber_first_moments, -1, 0)

@@ -32,6 +32,13 @@ class CrossSection:
     Raises
     ------
     ValueError : labels of another shape or type, or `wall_elements` that can not be halved.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> half = beamopt.FeaturePoints([15.0, -15.0], [0.0, 0.0], [1, 0])
+    >>> beamopt.CrossSection.from_points(beamopt.PolarGrid(), half)
+    <CrossSection: 128 × 360 elements, material 824.7 mm², chambers 824.7 mm²>
     """
 
     grid: PolarGrid

@@ -30,6 +30,12 @@ class FeaturePoints:
     Raises
     ------
     ValueError : lengths differ, a position is not finite, or a type is not 0…3.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.FeaturePoints([15.0, -15.0], [0.0, 0.0], [1, 0])
+    <FeaturePoints: 2, of material and supplies 1, 2, 3: 1, 1, 0, 0>
     """
 
     x: FloatArray

@@ -48,6 +48,12 @@ class PolarGrid:
     Raises
     ------
     ValueError : radii or angles out of order, or counts that are no whole numbers from 1 on.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> round(beamopt.PolarGrid(inner_radius=10.0, outer_radius=25.0).area, 1)
+    1649.3
     """
 
     inner_radius: float = 10.0

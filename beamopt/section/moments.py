@@ -23,6 +23,15 @@ class Moments:
     ----------
     raw : (…, 4, 6) integrals of {1, x, y, x², y², xy} over the area of each type (0 material,
         1…3 supply) about the grid's axis [mm², mm³, mm⁴].
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> half = beamopt.FeaturePoints([15.0, -15.0], [0.0, 0.0], [1, 0])
+    >>> section = beamopt.CrossSection.from_points(beamopt.PolarGrid(), half)
+    >>> moments: beamopt.Moments = section.moments
+    >>> moments
+    <Moments: material 824.7 mm², chambers 824.7, 0, 0 mm²>
     """
 
     raw: FloatArray

@@ -23,6 +23,12 @@ class SealRules:
     Raises
     ------
     ValueError : a length or area that is negative or not finite.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> beamopt.SealRules(skin=1.0).sealed
+    True
     """
 
     skin: float = 0.0

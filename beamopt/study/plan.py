@@ -32,6 +32,13 @@ class Run:
     Its scene is a bundled one with two methods and a seed, so that any single run can be repeated
     with `beamopt optimize`. The initial population follows from the seed alone: it differs between
     iterations and is the same for every combination and target.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> run: beamopt.Run = beamopt.Plan(iterations=1).runs()[0]
+    >>> run.name
+    'random-section-FD-1'
     """
 
     target: str
@@ -73,6 +80,12 @@ class Plan:
     Raises
     ------
     InputError : an override of what the study itself decides, or a target that is no bundled scene.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> len(beamopt.Plan(iterations=1).runs())
+    12
     """
 
     iterations: int = 4

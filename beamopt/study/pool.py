@@ -9,28 +9,60 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing.connection import wait
-from typing import Any
+from multiprocessing.connection import Connection, wait
+from typing import Any, TypeVar
 
+from beamopt.errors import EndedBySignalError
 from beamopt.provenance import THREAD_SETTINGS
 
 __all__ = ["InProcess", "in_process", "processes"]
 
+T = TypeVar("T")
+
 
 @contextmanager
 def processes(workers: int) -> Iterator[Executor]:
-    """Fresh processes with one thread each; on Ctrl-C the searches under way are finished."""
+    """Fresh processes with one thread each.
+
+    On Ctrl-C the tasks under way are finished; a signal that ends the process ends them too.
+    """
     before = {name: os.environ.get(name) for name in THREAD_SETTINGS}
     os.environ.update(dict.fromkeys(THREAD_SETTINGS, "1"))
-    pool = ProcessPoolExecutor(
-        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_first_process
+    ended, end = multiprocessing.Pipe(duplex=False)
+    pool = _Processes(
+        workers,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_follow_first_process,
+        initargs=(ended,),
     )
     try:
         yield pool
+    except EndedBySignalError:
+        end.close()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
+        ended.close()
+        end.close()
         for name, value in before.items():
             os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+class _Processes(ProcessPoolExecutor):
+    """Processes that Ctrl-C, which goes to every process of a terminal, does not interrupt.
+
+    They start with the signal blocked: while they load, they could only die of it with a traceback.
+    """
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Have it done; the first tasks start the processes."""
+        if not hasattr(signal, "pthread_sigmask"):
+            return super().submit(fn, *args, **kwargs)
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -52,14 +84,14 @@ class InProcess(Executor):
         return future
 
 
-def _follow_first_process() -> None:
-    """Leave Ctrl-C, which goes to every process of a terminal, to the first one; end with it."""
+def _follow_first_process(ended: Connection) -> None:
+    """Leave Ctrl-C to the first process; end with it, and when it closes its side of `ended`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     first = multiprocessing.parent_process()
     if first is not None:
 
         def end() -> None:
-            wait([first.sentinel])
+            wait([first.sentinel, ended])
             os._exit(1)
 
         threading.Thread(target=end, daemon=True).start()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -13,25 +13,31 @@ from pydantic import Field
 
 from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
-from beamopt.files import json_text, write_changed
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.files import json_text, refuse_link, write_changed
+from beamopt.folder import FolderKind, claimed, clear_leftovers, own_subfolder
 from beamopt.input_file import read_json
 from beamopt.model import Count, Model, parse, quantity
 from beamopt.optimisation import optimize
 from beamopt.refinement import Refinement
 from beamopt.study.plan import TARGETS, Plan, Run
-from beamopt.study.pool import processes
+from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
-from beamopt.study.table import Outcome, RefinedOutcome
+from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
+from beamopt.study.work import Tasks, check_none_lost, solve_all
 from beamopt.timing import read_times
 
 __all__ = ["run_study"]
+
+Callback = Callable[[Outcome, int, int], None]
+
+
+KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
 class StudyFile(Model):
     """What `study.json` says of the study in its folder."""
 
-    schema_: Literal["beamopt-study/1"] = Field("beamopt-study/1", alias="schema")
+    schema_: Literal["beamopt-study/1"] = Field(default="beamopt-study/1", alias="schema")
     seed: Count = quantity(..., "seed of the first iteration", low=0)
     overrides: list[str] = quantity(..., "keys replaced in every scene")
     iterations: Count = quantity(..., "runs of each target and combination", low=1)
@@ -45,9 +51,9 @@ def run_study(
     *,
     workers: int = 1,
     resume: bool = False,
-    callback: Callable[[Outcome, int, int], None] | None = None,
+    callback: Callback | None = None,
     figures: bool = True,
-) -> list[Outcome]:
+) -> StudyOutcomes:
     """Run every search of a study and write its table, figures and designs to `out`.
 
     Parameters
@@ -61,32 +67,38 @@ def run_study(
 
     Returns
     -------
-    list of Outcome : in the order of the table.
+    StudyOutcomes : a list of outcomes in the order of the table.
 
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+    NotComputedError : the processes of some searches died; all others are done.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> small = ("search.generations=0",)
+    >>> plan = beamopt.Plan(1, overrides=small, targets=("random-section",), refine=False)
+    >>> len(beamopt.run_study("study", plan, figures=False))
+    4
     """
     started = time.perf_counter()
     plan, folder = plan or Plan(), Path(out)
     runs = plan.runs()
     for run in {run.target: run for run in runs}.values():
         run.scene().load_target()  # complains before anything is written
-    _prepare(folder, plan, resume)
-    outcomes: dict[Run, Outcome] = {}
-    for outcome in _outcomes(runs, folder, workers):
-        outcomes[outcome.run] = outcome
-        if callback is not None:
-            callback(outcome, len(outcomes), len(runs))
-    ordered = [outcomes[run] for run in runs]
-    seconds = time.perf_counter() - started
-    write_report(folder, ordered, plan, seconds, workers, figures=figures)
+    with claimed(folder, KIND, resume=resume):
+        _prepare(folder, plan)
+        ordered = StudyOutcomes(_outcomes(runs, folder, workers, callback))
+        seconds = time.perf_counter() - started
+        write_report(folder, ordered, plan, seconds, workers, figures=figures)
     return ordered
 
 
 def run_one(run: Run, folder: Path) -> Outcome:
     """Run one search, or go on with it where it was left."""
     own = folder / "runs" / run.name
+    refuse_link(own)
     result = optimize(run.scene(), own, resume=True, figures=False)
     if result.status is StopReason.INTERRUPTED:
         raise KeyboardInterrupt  # a cut search is no result; it is gone on with on resume
@@ -116,19 +128,24 @@ def _refined(found: Refinement, seconds: float) -> RefinedOutcome:
     )
 
 
-def _outcomes(runs: Sequence[Run], folder: Path, workers: int) -> Iterator[Outcome]:
-    """Outcomes as they come: from this process, or from `workers` others."""
-    if workers == 1:
-        yield from (run_one(run, folder) for run in runs)
-        return
-    with processes(workers) as executor:
-        futures = [executor.submit(run_one, run, folder) for run in runs]
-        for future in as_completed(futures):
-            yield future.result()
+def _outcomes(
+    runs: Sequence[Run], folder: Path, workers: int, callback: Callback | None
+) -> list[Outcome]:
+    """Outcomes of all runs, in this process or in `workers` others."""
+    by_name = {run.name: run for run in runs}
+    work = Tasks(run_one, {name: (run, folder) for name, run in by_name.items()})
+
+    def keep(_: str, outcome: Outcome | None) -> None:
+        if outcome is not None and callback is not None:
+            callback(outcome, len(work.results) - len(work.lost), len(runs))
+
+    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
+    check_none_lost(work, "--resume searches again")
+    return [outcome for name in by_name if (outcome := work.results[name]) is not None]
 
 
-def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
-    """Make the folder, or check that the study in it is the one asked for."""
+def _prepare(folder: Path, plan: Plan) -> None:
+    """Check that the study in the folder, if any, is the one asked for; keep what is asked."""
     asked = StudyFile(
         seed=plan.seed,
         overrides=list(plan.overrides),
@@ -136,12 +153,12 @@ def _prepare(folder: Path, plan: Plan, resume: bool) -> None:
         targets=list(plan.targets),
         refine=plan.refine,
     )
-    there = folder / "study.json"
-    claim_folder(folder, there.name, resume=resume)
+    there = folder / KIND.marker
     if there.exists():
         _check_same(there, asked)
     clear_leftovers(folder, (there.name, *names(plan)))
     write_changed(there, json_text(asked.model_dump(by_alias=True)))
+    own_subfolder(folder / "runs")
 
 
 def _check_same(there: Path, asked: StudyFile) -> None:

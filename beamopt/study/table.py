@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,14 @@ from beamopt.files import csv_text
 from beamopt.judge import Verdict
 from beamopt.study.plan import COMBINATIONS, Run
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 __all__ = [
     "PAPER",
     "Outcome",
     "RefinedOutcome",
+    "StudyOutcomes",
     "comparison_markdown",
     "row",
     "table_csv",
@@ -61,6 +66,13 @@ class Outcome:
     final : losses of the individual with the lowest L in the last population, the paper's metric.
     best_ever : the lowest L [mm²] of all that the run judged.
     lowest : (generations + 1,) lowest L [mm²] of each generation's population.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> run = beamopt.Plan().runs()[0]
+    >>> beamopt.Outcome(run, beamopt.Verdict(10.0, 2.0), 9.0, 1820, (10.0,), 1.5)
+    <Outcome 'random-section-FD-1': L = 10 mm², 1820 sections judged>
     """
 
     run: Run
@@ -74,6 +86,30 @@ class Outcome:
     def __repr__(self) -> str:
         run = Brief(self.run.name)
         return f"<Outcome {run}: L = {self.final.L:.4g} mm², {self.evaluations} sections judged>"
+
+
+class StudyOutcomes(list[Outcome]):
+    """Outcomes of the runs of a study, in the order of its table.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> run = beamopt.Plan().runs()[0]
+    >>> outcome = beamopt.Outcome(run, beamopt.Verdict(10.0, 2.0), 9.0, 1820, (10.0,), 1.5)
+    >>> beamopt.StudyOutcomes([outcome])
+    <StudyOutcomes: 1 runs, lowest L = 10 mm²>
+    """
+
+    def __repr__(self) -> str:
+        losses = [one.final.L for one in self]
+        lowest = f", lowest L = {min(losses):.4g} mm²" if losses else ""
+        return f"<StudyOutcomes: {len(self)} runs{lowest}>"
+
+    def to_frame(self) -> DataFrame:
+        """Runs, then the best, mean and worst of each kind, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+
+        return frame_of(table_csv(self))
 
 
 SUMMARIES: dict[str, Callable[[Sequence[float]], float]] = {

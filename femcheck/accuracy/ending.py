@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +12,21 @@ from beamopt.arrays import FloatArray
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 __all__ = ["Ending", "Source", "Tried", "Within"]
 
 
 class Ending(Enum):
-    """How it ended; the value is the text shown to people."""
+    """How it ended; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Ending.REACHED.value
+    'accuracy reached'
+    """
 
     REACHED = "accuracy reached"
     NOT_REACHED = "accuracy not reached: the finest model's estimate is larger, or a tip was lost"
@@ -59,6 +70,17 @@ class Within:
     tried : all models that were asked, the last one's reply is the answer.
     reason : why this rung, in a sentence.
     source : where the estimate is from.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> within: femcheck.Within = femcheck.answer_within(question, 0.1)
+    >>> within.ending.name, within.chosen
+    ('REACHED', 'beam')
     """
 
     question: Question
@@ -75,6 +97,13 @@ class Within:
             f"<Within {self.accuracy:g} mm: {self.ending.name}, {self.chosen}, "
             f"error up to {self.worst:.2g} mm, {len(self.tried)} models tried>"
         )
+
+    def to_frame(self) -> DataFrame:
+        """Tips with their estimated errors, beside the beam's, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.accuracy.run import tips_csv
+
+        return frame_of(tips_csv(self))
 
     @property
     def seconds(self) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.errors import NoEquilibriumError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.provenance import provenance
 from femcheck.accuracy.ending import Ending, Within
@@ -23,10 +23,14 @@ from femcheck.check.folder import PACKAGES
 from femcheck.models.question import Question
 from femcheck.models.reply import Model
 
-__all__ = ["beam_difference", "run_accuracy"]
+__all__ = ["beam_difference", "run_accuracy", "tips_csv"]
 
 JOURNAL = "journal.jsonl"
-NAMES = (JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json")
+KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',))
+NAMES = (
+    *(JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
+    "provenance.json",
+)
 TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
 TRIED = "model,unknowns,size,found,of"
 DIGITS = 6  # of a millimetre
@@ -66,20 +70,20 @@ def run_accuracy(
     InputError : `out` holds something else, or can not be written; see also `answer_within`.
     """
     check_asked(question, accuracy, rung)
-    claim_folder(out, JOURNAL, resume=resume)
-    clear_leftovers(out, NAMES)
     asked = asked_of(question) | {"schema": "femcheck-accuracy/1", "accuracy": accuracy}
-    lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
-    found = answer_within(
-        question,
-        accuracy,
-        rung=rung,
-        most_seconds=most_seconds,
-        workers=workers,
-        progress=progress,
-        kept=_Journal(lines, measured_in(lines, question.law.limits.iterations)),
-    )
-    _write(found, out)
+    with claimed(out, KIND, resume=resume):
+        lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
+        clear_leftovers(out, NAMES)
+        found = answer_within(
+            question,
+            accuracy,
+            rung=rung,
+            most_seconds=most_seconds,
+            workers=workers,
+            progress=progress,
+            kept=_Journal(lines, measured_in(lines, question.law.limits.iterations)),
+        )
+        _write(found, out)
     return found
 
 
@@ -100,7 +104,7 @@ def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
 
 def _write(found: Within, out: Path) -> None:
     found.question.design.save(out / "design.json")
-    write_atomic(out / "tips.csv", csv_text(TIPS, _tips(found)))
+    write_atomic(out / "tips.csv", tips_csv(found))
     tried = [
         (one.name, one.reply.unknowns, one.reply.size,
          int(one.reply.found.sum()), len(one.reply.endings))
@@ -111,6 +115,11 @@ def _write(found: Within, out: Path) -> None:
     write_atomic(out / "timing.csv", csv_text("what,value,unit", times))
     write_atomic(out / "summary.json", json_text(_summary(found)))
     write_atomic(out / "provenance.json", json_text(provenance(PACKAGES)))
+
+
+def tips_csv(found: Within) -> str:
+    """Tips with their estimated errors, beside the beam's."""
+    return csv_text(TIPS, _tips(found))
 
 
 def _tips(found: Within) -> Iterator[tuple[object, ...]]:

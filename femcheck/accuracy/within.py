@@ -74,6 +74,17 @@ def answer_within(
     Raises
     ------
     InputError : an accuracy that is not positive; a rung that does not answer the law.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> within = femcheck.answer_within(question, 0.1)
+    >>> within.reply is not None and within.reply.is_whole
+    True
     """
     check_asked(question, accuracy, rung)
     ask = _Asking(question, accuracy, workers, progress, kept)

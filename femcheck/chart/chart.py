@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Reference
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["ACCURACIES", "Chart", "Row"]
 
@@ -46,7 +50,18 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """All rows of a question. reference : None where nothing could be extrapolated."""
+    """All rows of a question. reference : None where nothing could be extrapolated.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> femcheck.Chart.of(question, [], None)
+    <Chart 'round': 0 models, reference within inf mm>
+    """
 
     question: Question
     rows: tuple[Row, ...]
@@ -81,6 +96,13 @@ class Chart:
             for one in measured
         ]
         return cls(question, tuple(rows), reference)
+
+    def to_frame(self) -> DataFrame:
+        """Error, cost and ending of every model, a row each, as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.chart.table import chart_csv
+
+        return frame_of(chart_csv(self))
 
     @property
     def uncertainty(self) -> float:

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Executor, Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
 
 from beamopt.errors import InputError
 from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import claim_folder
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.line_journal import LineJournal
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance
 from beamopt.study.pool import processes
-from femcheck.chart.chart import ACCURACIES, Chart, Row
+from beamopt.study.work import solve_all
+from femcheck.chart.chart import ACCURACIES, Chart
 from femcheck.chart.figure import chart_figure
-from femcheck.chart.kept import JOURNAL, KIND, asked_of, chart_of, measured_in
+from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
+from femcheck.chart.table import chart_csv
 from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
@@ -32,8 +34,12 @@ from femcheck.models.solid import SolidModel
 
 __all__ = ["Budget", "run_chart"]
 
-CHART = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
+KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
+NAMES = (
+    *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
+    *("chart.svg", "chart.png"),
+)
 GROWTH = 1.8  # a finer model of a series takes at least so many times as long
 
 Progress = Callable[[int, int, str], None]
@@ -73,18 +79,47 @@ def run_chart(
     Raises
     ------
     InputError : `out` holds something else, or can not be written; there is no such family.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> question = femcheck.Question.of("round", subject.design, femcheck.CheckOptions())
+    >>> chart = femcheck.run_chart(question, Path("chart"), families=["beam"])
+    >>> len(chart.rows)
+    1
     """
     series = line_up(question, families)
     if not series:
         raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
-    claim_folder(out, JOURNAL, (), resume=resume)
-    journal = LineJournal(out / JOURNAL, asked_of(question), KIND)
-    measured = measured_in(journal, question.law.limits.iterations)
+    with claimed(out, KIND, resume=resume):
+        journal = journal_of(out, asked_of(question))
+        clear_leftovers(out, NAMES)
+        measured = measured_in(journal, question.law.limits.iterations)
+        _measure(question, series, journal, measured, budget or Budget(), workers, progress, pool)
+        chart = chart_of(question, measured)
+        _write(chart, out, workers)
+    return chart
+
+
+def _measure(
+    question: Question,
+    series: Sequence[Series],
+    journal: LineJournal,
+    measured: dict[str, Measured],
+    budget: Budget,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> None:
+    """Ask what is not measured yet."""
     asked = {key_of(model) for one in series for model in one.all}
 
-    def keep(one: Measured) -> None:
+    def keep(_: str, one: Measured) -> None:
         line = written(one)
-        measured[line["model"]] = one
         if np.isfinite(one.seconds):  # what was left out may be asked with more time
             journal.add(line)
         if progress is not None:
@@ -92,63 +127,53 @@ def run_chart(
 
     if progress is not None:
         progress(len(asked & measured.keys()), len(asked), "starting")
-    _ask(question, series, measured, budget or Budget(), lambda: pool(workers), workers, keep)
-    chart = chart_of(question, measured)
-    _write(chart, out, workers)
-    return chart
+    work = _ChartWork(question, series, budget, measured)
+    solve_all(work, lambda: pool(workers), workers, keep)
 
 
-def _ask(
-    question: Question,
-    series: Sequence[Series],
-    measured: dict[str, Measured],
-    budget: Budget,
-    pool: Callable[[], AbstractContextManager[Executor]],
-    workers: int,
-    keep: Callable[[Measured], None],
-) -> None:
-    """Each series from coarse to fine; a finer model waits until its cost can be guessed."""
-    left = {one.family: [m for m in one.all if key_of(m) not in measured] for one in series}
-    while any(left.values()):
-        running: dict[Future[Measured], tuple[str, Model]] = {}
-        with pool() as executor:
-            try:
-                while _begin(
-                    question, series, left, measured, running, budget, executor, workers, keep
-                ):
-                    finished, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in finished:
-                        measured_one = future.result()
-                        running.pop(future)
-                        keep(measured_one)
-            except BrokenProcessPool:
-                for _, model in running.values():  # one of them is to blame; --resume asks again
-                    keep(_without(question, model, Ended(Status.STOPPED)))
+@dataclass
+class _ChartWork:
+    """Each series from coarse to fine: a finer model waits until its cost can be guessed.
 
+    results : replies by model, those of earlier charts among them.
+    """
 
-def _begin(
-    question: Question,
-    series: Sequence[Series],
-    left: dict[str, list[Model]],
-    measured: dict[str, Measured],
-    running: dict[Future[Measured], tuple[str, Model]],
-    budget: Budget,
-    executor: Executor,
-    workers: int,
-    keep: Callable[[Measured], None],
-) -> bool:
-    """Have as many models asked as there are workers, one of a family; whether any is running."""
-    busy = {name for name, _ in running.values()}
-    for one in series:
-        waiting = left[one.family]
-        if one.family in busy:  # what is coming tells what the next one will cost
-            continue
-        while waiting and (why := _too_dear(one, waiting[0], measured, budget)):
-            keep(_without(question, waiting.pop(0), why))
-        if waiting and len(running) < workers:
-            model = waiting.pop(0)
-            running[executor.submit(measure, question, model)] = one.family, model
-    return bool(running)
+    question: Question
+    series: Sequence[Series]
+    budget: Budget
+    results: dict[str, Measured]
+
+    def __post_init__(self) -> None:
+        self._models = {key_of(m): (one, m) for one in self.series for m in one.all}
+
+    @property
+    def keys(self) -> list[str]:
+        """Series by series."""
+        return list(self._models)
+
+    def begin(self, executor: Executor, waiting: Sequence[str]) -> bool:
+        """Nothing comes before the models."""
+        return True
+
+    def is_ready(self, key: str) -> bool:
+        """Whether all coarser models of its series are done."""
+        series, model = self._models[key]
+        coarser = takewhile(lambda one: one is not model, series.all)
+        return all(key_of(one) in self.results for one in coarser)
+
+    def submit(self, executor: Executor, key: str) -> Future[Measured]:
+        """Have a model asked; one that takes too long is left out."""
+        series, model = self._models[key]
+        why = _too_dear(series, model, self.results, self.budget)
+        if why is None:
+            return executor.submit(measure, self.question, model)
+        left_out: Future[Measured] = Future()
+        left_out.set_result(_without(self.question, model, why))
+        return left_out
+
+    def stopped(self, key: str) -> Measured:
+        """The reply of a model whose process died; --resume asks it again."""
+        return _without(self.question, self._models[key][1], Ended(Status.STOPPED))
 
 
 def _too_dear(
@@ -183,7 +208,7 @@ def _without(question: Question, model: Model, why: Ended) -> Measured:
 
 
 def _write(chart: Chart, out: Path, workers: int) -> None:
-    write_atomic(out / "chart.csv", csv_text(CHART, [_cells(row) for row in chart.rows]))
+    write_atomic(out / "chart.csv", chart_csv(chart))
     best = [
         (accuracy, one.measured.family, one.measured.resolution, one.error, one.measured.seconds)
         for accuracy in ACCURACIES
@@ -196,11 +221,3 @@ def _write(chart: Chart, out: Path, workers: int) -> None:
     about = {"measured_with": chart.made_with, **provenance(PACKAGES)}
     write_atomic(out / "provenance.json", json_text({**said, **about}))
     save_figure(chart_figure(chart), out / "chart.svg", out / "chart.png")
-
-
-def _cells(row: Row) -> tuple[object, ...]:
-    one, reply = row.measured, row.measured.reply
-    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
-    found = int(reply.found.sum())
-    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
-    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)

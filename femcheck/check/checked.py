@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from beamopt.brief import Brief
 from femcheck.check.case import CaseResult
@@ -14,6 +15,9 @@ from femcheck.check.subject import GeometrySteps, Subject
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import Quality
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 __all__ = ["Checked"]
 
 
@@ -22,6 +26,18 @@ class Checked:
     """What a check found.
 
     failure : why there is no solid; what follows is then None or empty.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> without = femcheck.CheckOptions(mesher=femcheck.Mesher("no-such-gmsh"))
+    >>> checked: femcheck.Checked = femcheck.check_design(subject, Path("checked"), without)
+    >>> checked.holds, checked.failure
+    (False, <MeshFailure NO_GMSH: 'no-such-gmsh'>)
     """
 
     subject: Subject
@@ -39,6 +55,13 @@ class Checked:
             return f"<Checked {name}: {Brief(str(self.failure))}>"
         ended = "holds" if self.holds else "does not hold"
         return f"<Checked {name}: {ended}, {self.comparison!r}>"
+
+    def to_frame(self) -> DataFrame:
+        """Tips of every solid beside the beam's (`compare.csv`), as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.check.tables import compare_csv
+
+        return frame_of(compare_csv(self))
 
     @property
     def certain(self) -> bool:

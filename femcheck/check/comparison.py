@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.workspace import NODES, node_index
+from femcheck.check.beside_beam import STILL, BesideBeam
 from femcheck.check.case import CaseResult
 from femcheck.check.schedule import Key
 from femcheck.check.stage import Stage
@@ -19,10 +20,10 @@ from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.solid.elements import ELEMENTS
 
-__all__ = ["Comparison", "Tips", "compare"]
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
-SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
-STILL = 1e-9  # mm
+__all__ = ["Comparison", "Tips", "compare"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +48,28 @@ class Tips:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(BesideBeam):
     """The beam's tips against the solid's.
 
     solids : what was computed, and extrapolated.
     refinement : layers of the standard mesh over those of the coarse one.
     order : p of the tip's convergence with the layers; None where it is not known.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> quick = femcheck.CheckOptions(
+    ...     layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> checked = femcheck.check_design(subject, Path("compared"), quick)
+    >>> compared: femcheck.Comparison | None = checked.comparison
+    >>> if compared is not None:
+    ...     print(compared.final.tips.shape, compared.unanswered)
+    (27, 3) 0
     """
 
     subject: Subject
@@ -75,34 +92,17 @@ class Comparison:
         """The standard mesh, extrapolated in 1/c: what the beam is judged against."""
         return self.solid("standard", np.inf)
 
-    @property
-    def displacement(self) -> FloatArray:
-        """(27,) of the beam's tip [mm]."""
-        straight = np.array([0, 0, self.subject.design.actuator.length])
-        return np.asarray(np.linalg.norm(self.subject.beam_tips - straight, axis=1))
+    def to_frame(self) -> DataFrame:
+        """Beam and solid at each combination (`table.csv`), as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.check.tables import table_csv
+
+        return frame_of(table_csv(self))
 
     @property
-    def difference(self) -> FloatArray:
-        """(27,) between the beam's tip and the solid's [mm]; NaN without an answer."""
-        return np.asarray(np.linalg.norm(self.final.tips - self.subject.beam_tips, axis=1))
-
-    @property
-    def is_loaded(self) -> NDArray[np.bool_]:
-        """(27,) whether any supply has pressure."""
-        return np.asarray(self.subject.pressures.any(axis=1))
-
-    @property
-    def share(self) -> FloatArray:
-        """(27,) difference over displacement.
-
-        Where the tip hardly moves, over a hundredth of the largest displacement.
-        """
-        return np.asarray(self.difference / self._moved)
-
-    @property
-    def _moved(self) -> FloatArray:
-        least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
-        return np.asarray(np.maximum(self.displacement, least))
+    def solid_tips(self) -> FloatArray:
+        """(27, 3) what the beam is judged against [mm]."""
+        return self.final.tips
 
     @property
     def moves(self) -> bool:
@@ -153,27 +153,6 @@ class Comparison:
         shares = (mesh + self.penalty_error) / self._moved
         loaded = shares[self.is_loaded]
         return float(loaded.max()) if loaded.size else float("nan")
-
-    @property
-    def unanswered(self) -> int:
-        """Loaded cases of the standard mesh that did not converge."""
-        failed = np.isnan(self.difference) & self.is_loaded
-        return int(failed.sum())
-
-    @property
-    def worst(self) -> float:
-        """Largest share over the loaded cases with an answer; NaN without any."""
-        shares = self._answered()
-        return float(shares.max()) if shares.size else float("nan")
-
-    @property
-    def median(self) -> float:
-        """Median share over the loaded cases with an answer; NaN without any."""
-        shares = self._answered()
-        return float(np.median(shares)) if shares.size else float("nan")
-
-    def _answered(self) -> FloatArray:
-        return np.asarray(self.share[self.is_loaded & ~np.isnan(self.share)])
 
 
 def compare(

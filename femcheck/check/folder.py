@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from beamopt.arrays import FloatArray
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers, differences
-from beamopt.input_file import read_json
+from beamopt.folder import FolderKind, claimed, clear_leftovers, differences, own_subfolder
+from beamopt.input_file import read_bytes, read_json
 from beamopt.provenance import provenance
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
@@ -19,8 +20,11 @@ __all__ = ["CheckFolder"]
 
 MARKER = "check.json"
 COMMON = (MARKER, "design.json", "compare.csv", "summary.json", "timing.csv", "provenance.json")
-PICTURES = ("mesh.msh", "mesh.vtu", "picture.png", "picture.log")
-EARLY = ("cases", "design.json")  # what may be there before the marker
+PICTURES = (
+    *("mesh.msh", "mesh.vtu", "picture.png", "picture.log"),
+    *("paths.png", "paths.svg", "axis.png", "axis.svg"),  # of a prediction
+)
+KIND = FolderKind("a check", MARKER, ('{"schema":"femcheck/',))
 PACKAGES = ("scikit-fem", "gmsh", "meshio", "pyvista", "pypardiso", "shapely")
 
 
@@ -31,40 +35,49 @@ class CheckFolder:
         self.path = path
 
     @classmethod
+    @contextmanager
     def open(
         cls, path: Path, subject: Subject, question: Mapping[str, object], *, resume: bool
-    ) -> CheckFolder:
-        """Make the folder, or with `resume` take the one there.
+    ) -> Iterator[CheckFolder]:
+        """Make the folder, or with `resume` take the one there; hold it meanwhile.
 
         question : what must be the same for what is there to be gone on with.
 
         Raises
         ------
-        InputError : it holds something already, or another design's verdict or question's.
+        InputError : it holds another design's verdict or question's, or see `claimed`.
         """
         asked = {"schema": "femcheck/1", "design": subject.name, "question": dict(question)}
         text, design_text = json_text(asked), subject.design.json()  # before the folder is made
-        claim_folder(path, MARKER, EARLY, resume=resume)
-        there = path / MARKER
+        with claimed(path, KIND, resume=resume):
+            folder = cls(path)
+            folder._begin(text, design_text)
+            yield folder
+
+    def _begin(self, text: str, design_text: str) -> None:
+        there, design = self.path / MARKER, self.path / "design.json"
         if there.exists():
             kept = read_json(there)
             for key, before, now in differences(kept, json.loads(text)):
                 said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
                 raise InputError(there, key, before, said)
-            design = path / "design.json"
-            if design.exists() and design.read_bytes() != design_text.encode():
+            if design.exists() and read_bytes(design) != design_text.encode():
                 raise InputError(design, "", None, "differs from the design asked for now")
-        cases = path / "cases"
-        cases.mkdir(exist_ok=True)
-        clear_leftovers(cases, None)
-        write_atomic(path / "design.json", design_text)
         write_atomic(there, text)
-        return cls(path)
+        write_atomic(design, design_text)
+        own_subfolder(self.cases)
+        if self.deformed.exists():
+            own_subfolder(self.deformed)
 
     @property
     def cases(self) -> Path:
         """What was solved, one file each."""
         return self.path / "cases"
+
+    @property
+    def deformed(self) -> Path:
+        """Deformed meshes, one file a combination."""
+        return self.path / "deformed"
 
     def write(self, files: Mapping[str, str | None]) -> None:
         """Write texts by file name, each whole or not at all; None takes a file away."""
@@ -82,10 +95,9 @@ class CheckFolder:
 
         shown = solid.shown()
         write_mesh(self.path, solid.body().extrusion)
-        deformed = self.path / "deformed"
-        deformed.mkdir(exist_ok=True)
+        own_subfolder(self.deformed)
         for name, x in states.items():
-            write_deformed(deformed / f"{name}.vtu", shown.extrusion, x[shown.nodes])
+            write_deformed(self.deformed / f"{name}.vtu", shown.extrusion, x[shown.nodes])
 
     def without_answer(self) -> None:
         """Take away pictures and meshes of a verdict that had an answer before."""

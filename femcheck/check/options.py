@@ -22,6 +22,12 @@ class CheckOptions(SolidOptions):
     Raises
     ------
     InputError : a value that can not be used, with what is allowed.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.CheckOptions(agree=0.01, layers=8)
+    CheckOptions(agree=0.01, layers=8)
     """
 
     penalties: tuple[float, float] = (2500.0, 10000.0)

@@ -11,6 +11,7 @@ import numpy as np
 
 import femcheck.picture as picture
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.case import CaseResult, Solid
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import compare
@@ -22,7 +23,6 @@ from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.check.subject import Subject, geometry_steps
 from femcheck.check.tables import tables_of
-from femcheck.check.work import solve_all
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -58,13 +58,39 @@ def check_design(
     Raises
     ------
     InputError : `out` holds something else, or can not be written.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> quick = femcheck.CheckOptions(
+    ...     layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> checked = femcheck.check_design(subject, Path("checked"), quick)
+    >>> checked.comparison is not None and checked.comparison.unanswered
+    0
     """
-    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
+        checked = _checked(subject, folder, options, workers, progress, pool)
+        _write(folder, checked)
+    return checked
+
+
+def _checked(
+    subject: Subject,
+    folder: CheckFolder,
+    options: CheckOptions,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> Checked:
+    """Solve what is not solved yet."""
     sections = section_meshes(subject, options)
     if isinstance(sections, MeshFailure):
-        checked = Checked(subject, options, sections, None, None, None, (), {})
-        _write(folder, checked)
-        return checked
+        return Checked(subject, options, sections, None, None, None, (), {})
     stages = _stages(subject, options, *sections)
     schedule = Schedule(stages, subject.design.pressures, options.limits)
     _take_kept(folder.cases, schedule)
@@ -82,9 +108,7 @@ def check_design(
     compared = compare(subject, stages, schedule.results)
     geometry = geometry_steps(subject, sections[0])
     quality = quality_of(subject.outline, sections[0])
-    checked = Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
-    _write(folder, checked)
-    return checked
+    return Checked(subject, options, None, compared, geometry, quality, stages, schedule.results)
 
 
 def _write(folder: CheckFolder, checked: Checked) -> None:

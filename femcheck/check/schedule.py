@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from concurrent.futures import Executor, Future
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.study.work import lost_errors
 from femcheck.check.case import Case, CaseResult, rest_slopes, solve_case, stopped
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits
@@ -81,7 +81,7 @@ class Schedule:
             if stage.name in begun and stage.name not in self.slopes:
                 try:
                     self.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
-                except BrokenProcessPool:
+                except lost_errors():
                     self.slopes[stage.name] = None  # its cases start without a prediction
                     return False
         return True

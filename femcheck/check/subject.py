@@ -33,11 +33,32 @@ __all__ = [
 
 
 class UnsealedDesignError(ValueError):
-    """A design whose chambers are open: no solid can be made of it."""
+    """A design whose chambers are open: no solid can be made of it.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> issubclass(femcheck.UnsealedDesignError, ValueError)
+    True
+    """
 
 
 class LoadedDesignError(ValueError):
-    """A design whose rod is not straight, uniform and under pressure alone."""
+    """A design whose rod is not straight, uniform and under pressure alone.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> loaded = beamopt.load_design(str(beamopt.load_scene("gravity").target.file)).model_copy(
+    ...     update={"loads": beamopt.Loading(density=1070.0)}
+    ... )
+    >>> try:
+    ...     subject = femcheck.Subject("heavy", loaded)
+    ... except femcheck.LoadedDesignError as error:
+    ...     print(str(error).partition(":")[0])
+    heavy has loads
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +73,16 @@ class Subject:
     Raises
     ------
     LoadedDesignError : loads, segments or a rest curvature, which the solid does not have.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> subject = femcheck.Subject("renamed", subject.design)
+    >>> round(subject.slenderness, 3)
+    2.0
     """
 
     name: str
@@ -137,6 +168,15 @@ def sealed_copy(name: str, design: Design, skin: float) -> Subject:
     Raises
     ------
     ValueError : a skin that leaves nothing of the ring, or not more than the design has already.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> subject.design.seal.skin
+    1.0
     """
     if design.seal.skin >= skin:
         raise ValueError(f"the design has a skin of {design.seal.skin:g} mm already; ask for more")
@@ -155,6 +195,15 @@ def slender_copy(subject: Subject, slenderness: float) -> Subject:
     Raises
     ------
     ValueError : a length that no design can have.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> femcheck.slender_copy(subject, 4.0).design.actuator.length
+    200.0
     """
     length = slenderness * 2 * subject.design.grid.outer_radius
     actuator = subject.design.actuator.model_copy(update={"length": length})

@@ -14,7 +14,17 @@ from femcheck.check.comparison import Comparison
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 
-__all__ = ["COMPARE", "both", "cells", "plain", "summary", "tables_of", "verdict"]
+__all__ = [
+    "COMPARE",
+    "both",
+    "cells",
+    "compare_csv",
+    "plain",
+    "summary",
+    "table_csv",
+    "tables_of",
+    "verdict",
+]
 
 DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
 
@@ -34,18 +44,18 @@ def tables_of(checked: Checked) -> dict[str, str | None]:
     """All files that are text; None where there is nothing to say."""
     compared = checked.comparison
     return {
-        "compare.csv": None if compared is None else _compare_csv(checked),
-        "table.csv": None if compared is None else _table_csv(compared),
+        "compare.csv": None if compared is None else compare_csv(checked),
+        "table.csv": None if compared is None else table_csv(compared),
         "summary.json": json_text(summary(checked)),
         "timing.csv": csv_text("what,value,unit", _timing(checked)),
     }
 
 
-def _compare_csv(checked: Checked) -> str:
+def compare_csv(checked: Checked) -> str:
     """27 rows for every solid, computed (c finite) and extrapolated (c infinite)."""
     compared = checked.comparison
-    assert compared is not None
-    return csv_text(COMPARE, _compare_rows(compared, checked.options.law))
+    rows = () if compared is None else _compare_rows(compared, checked.options.law)
+    return csv_text(COMPARE, rows)
 
 
 def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]]:
@@ -71,7 +81,7 @@ def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]
             )
 
 
-def _table_csv(compared: Comparison) -> str:
+def table_csv(compared: Comparison) -> str:
     """27 rows: beam, solid, difference and what it is made of."""
     subject = compared.subject
     length = subject.design.actuator.length

@@ -5,23 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
-from femcheck.accuracy.ending import Ending, Within
+from femcheck.accuracy.ending import Within
 from femcheck.accuracy.run import beam_difference, run_accuracy
 from femcheck.accuracy.within import RungChoice
 from femcheck.chart.chart import seconds_text
 from femcheck.cli.request import RunRequest
-from femcheck.cli.run import folders_of, refuse_twins, subject_of
-from femcheck.models.named import named_design
+from femcheck.cli.subjects import folders_of, question_of, refuse_twins
+from femcheck.cli.verdicts import code_of
 from femcheck.models.question import LawChoice, Question
-from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.elements import DEFAULT_ELEMENT
 
 __all__ = ["accuracy_command", "accuracy_of"]
@@ -47,7 +46,7 @@ def accuracy_of(text: str) -> float:
 
 
 def accuracy_command(request: RunRequest, options: LawChoice) -> None:
-    """Answer every question to the accuracy; end with 1 unless all reach it and beams agree."""
+    """Answer every question to the accuracy; end with the code of all verdicts."""
     rung, accuracy = _rung(request.rung), accuracy_of(request.accuracy or "")
     for name, usual in (("layers", None), ("element", DEFAULT_ELEMENT), ("size", 1.0)):
         value = getattr(request, name)
@@ -59,29 +58,19 @@ def accuracy_command(request: RunRequest, options: LawChoice) -> None:
     folders = folders_of(request, [question.name for question in questions])
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
     console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
-    everything_holds = True
+    codes = []
     for question, folder in zip(questions, folders, strict=True):
         found = _followed(question, accuracy, rung, folder, request)
         _report(found, folder)
-        everything_holds = everything_holds and _holds(found, options.agree)
-    if not everything_holds:
-        raise typer.Exit(1)
+        codes.append(code_of(found, options.agree))
+    end_with(joined(codes))
 
 
 def _questions(request: RunRequest, options: LawChoice) -> list[Question]:
     """Of designs, runs and scenes; loads are welcome, as long as the law is the beam's."""
-    questions = []
-    for source in request.designs:
-        name, design = named_design(str(source))
-        if request.seal is not None or request.slenderness is not None:
-            design = subject_of(source, name, design, request.seal, request.slenderness).design
-        if isinstance(options, PredictionOptions):
-            try:
-                options.law_for(design.actuator)
-            except InputError as error:
-                raise InputError(name, error.key, error.value, error.allowed) from None
-        say_findings(design, name if len(request.designs) > 1 else "")
-        questions.append(Question.of(name, design, options))
+    questions = [question_of(source, request, options) for source in request.designs]
+    for one in questions:
+        say_findings(one.design, one.name if len(questions) > 1 else "")
     refuse_twins(request, [question.name for question in questions])
     return questions
 
@@ -117,19 +106,6 @@ def _followed(
             if error.key != "rung":
                 raise
             raise InputError("--rung", "", error.value, error.allowed) from None
-
-
-def _holds(found: Within, agree: float) -> bool:
-    """Whether the accuracy was reached and the beam is near enough, as in a check."""
-    if found.ending is not Ending.REACHED or found.reply is None:
-        return False
-    if found.is_beam:
-        return True
-    beam, difference = beam_difference(found)
-    straight = np.array([0.0, 0.0, found.question.design.actuator.length])
-    moved = np.linalg.norm(beam - straight, axis=1)
-    allowed = np.maximum(agree * np.maximum(moved, 1e-2 * moved.max()), found.accuracy)
-    return bool((difference <= allowed).all())
 
 
 def _report(found: Within, folder: Path) -> None:

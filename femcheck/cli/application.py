@@ -10,6 +10,17 @@ from typing import Annotated
 import typer
 
 from beamopt.cli.endings import finish
+from femcheck.cli.option_types import (
+    Constants,
+    Law,
+    Nu,
+    Resume,
+    Seal,
+    Slenderness,
+    Wind,
+    Winding,
+    Workers,
+)
 
 __all__ = ["app", "run"]
 
@@ -42,53 +53,24 @@ def about(
 @app.command(name="run")
 def run_designs(
     designs: Annotated[
-        list[Path], typer.Argument(metavar="DESIGN|RUN…", help="Design files or run folders.")
+        list[str],
+        typer.Argument(metavar="DESIGN|RUN|SCENE…", help="Design files, run folders or scenes."),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for the results; checks/NAME if left out."),
-    ] = None,
-    seal: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MM", help="Check a copy sealed by a skin of so many mm, and say what it moved."
-        ),
+        Path | None, typer.Option(help="Folder for the results; checks/NAME if left out.")
     ] = None,
     agree: Annotated[
         str,
         typer.Option(help="Largest difference allowed, as a share of the tip's displacement."),
     ] = "5%",
-    law: Annotated[
-        str,
-        typer.Option(
-            help="rigid-section: does the solid converge to the beam? What real material does: "
-            "neo-hookean, gent, mooney-rivlin, yeoh; wound: neo-hookean, every chamber wound."
-        ),
-    ] = "rigid-section",
-    nu: Annotated[
-        float | None, typer.Option(help="Poisson's ratio of a material, 0…0.5; 0.5 if left out.")
-    ] = None,
-    constant: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="A constant of a law; `femcheck laws` has them."),
-    ] = None,
-    wind: Annotated[
-        str | None,
-        typer.Option(help="Wind thread round chambers, outer (the outside) or both; any material."),
-    ] = None,
-    winding: Annotated[
-        float | None,
-        typer.Option(
-            metavar="N/M", help="Stiffness of the thread times turns per metre; 1e5 if left out."
-        ),
-    ] = None,
-    slenderness: Annotated[
-        float | None,
-        typer.Option(
-            metavar="H/D", help="Take another length, in outer diameters; for the beam too."
-        ),
-    ] = None,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
+    law: Law = "rigid-section",
+    nu: Nu = None,
+    constant: Constants = None,
+    wind: Wind = None,
+    winding: Winding = None,
+    seal: Seal = None,
+    slenderness: Slenderness = None,
+    workers: Workers = 2,
     layers: Annotated[
         int | None, typer.Option(help="Layers, 2…64; as many as its bending needs if left out.")
     ] = None,
@@ -125,13 +107,12 @@ def run_designs(
     budget: Annotated[
         float, typer.Option(metavar="S", help="With --accuracy: processor time of one model.")
     ] = math.inf,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the checks in --out.")] = (
-        False
-    ),
+    resume: Resume = False,
 ) -> None:
     """Mesh designs, load their chambers, and compare the solid's tips with the beam's.
 
-    Ends with 0 if every design agrees, 1 if one does not or has cases without an answer.
+    Ends with 0 if every design agrees, 1 if one does not or has no equilibrium, 3 if cases could
+    not be computed.
     """
     from femcheck.cli.request import RunRequest
     from femcheck.cli.run import run_command
@@ -173,9 +154,13 @@ def chart_models(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results; charts/NAME if left out.")
     ] = None,
-    law: Annotated[str, typer.Option(help="As of `femcheck run`.")] = "rigid-section",
-    nu: Annotated[float | None, typer.Option(help="As of `femcheck run`.")] = None,
-    wind: Annotated[str | None, typer.Option(help="As of `femcheck run`.")] = None,
+    law: Law = "rigid-section",
+    nu: Nu = None,
+    constant: Constants = None,
+    wind: Wind = None,
+    winding: Winding = None,
+    seal: Seal = None,
+    slenderness: Slenderness = None,
     levels: Annotated[
         str | None, typer.Option(metavar="A,B,C", help="Pressures [kPa] instead of the design's.")
     ] = None,
@@ -186,16 +171,23 @@ def chart_models(
     seconds: Annotated[
         float, typer.Option(metavar="S", help="Leave out models expected to need more of the CPU.")
     ] = math.inf,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Models asked at once.")] = 2,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on; where all is there, only draw it again.")
-    ] = False,
+    workers: Workers = 2,
+    resume: Resume = False,
 ) -> None:
     """Chart error against processor time of every model: arcs, rods, solids; who is cheapest."""
     from femcheck.cli.chart import ChartRequest, chart_command
     from femcheck.cli.request import RunRequest
 
-    asked = RunRequest([], law=law, nu=nu, wind=wind)
+    asked = RunRequest(
+        [source],
+        law=law,
+        nu=nu,
+        constants=constant or [],
+        wind=wind,
+        winding=winding,
+        seal=seal,
+        slenderness=slenderness,
+    )
     chart_command(ChartRequest(source, out, asked, levels, family or [], seconds, workers, resume))
 
 
@@ -243,8 +235,8 @@ def stability_map(
             "wound-wall; may be given again. All if left out."
         ),
     ] = None,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Cases solved at once.")] = 2,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the map there.")] = False,
+    workers: Workers = 2,
+    resume: Resume = False,
     redraw: Annotated[
         bool, typer.Option("--redraw", help="Tables and figure from what is there; solve nothing.")
     ] = False,
@@ -263,15 +255,19 @@ def write_baselines(
             metavar="[DESIGN…]", help="Design files, or names of the package's; those if left out."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("reports/baseline"),
-    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
-    force: Annotated[bool, typer.Option("--force", help="Write over baselines there.")] = False,
+    out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),
+    meshes: Annotated[
+        Path | None, typer.Option(help="Folder of small section meshes; that of --out if left out.")
+    ] = None,
+    workers: Workers = 2,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over baselines, and other files in their place.")
+    ] = False,
 ) -> None:
     """Write what every rung says of designs, with tolerances from error estimates."""
     from femcheck.cli.regression import baseline_command
 
-    baseline_command(designs or [], out, meshes, workers, force=force)
+    baseline_command(designs or [], out, meshes or out, workers, force=force)
 
 
 @app.command(name="regress")
@@ -280,19 +276,22 @@ def hold_against_baselines(
         list[str] | None,
         typer.Argument(metavar="[DESIGN…]", help="Designs; all that have one if left out."),
     ] = None,
-    baseline: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path(
-        "reports/baseline"
-    ),
-    meshes: Annotated[Path, typer.Option(help="Folder of small section meshes.")] = Path("meshes"),
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Parts computed at once.")] = 2,
+    baseline: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),
+    meshes: Annotated[
+        Path | None, typer.Option(help="Folder of section meshes; that of --baseline if left out.")
+    ] = None,
+    workers: Workers = 2,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Write all that moved.")
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is no such table.")
+    ] = False,
 ) -> None:
     """Compute what baselines hold anew; ends with 1 and a table if anything moved."""
     from femcheck.cli.regression import regress_command
 
-    regress_command(designs or [], baseline, meshes, workers, out)
+    regress_command(designs or [], baseline, meshes or baseline, workers, out, force=force)
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.exit_codes import end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
@@ -19,7 +20,8 @@ from beamopt.provenance import thread_settings
 from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
 from femcheck.chart.run import Budget, run_chart
 from femcheck.cli.request import RunRequest, options_of
-from femcheck.models.named import named_design
+from femcheck.cli.subjects import question_of
+from femcheck.cli.verdicts import code_of
 from femcheck.models.question import Question
 
 __all__ = ["ChartRequest", "chart_command", "levels_of"]
@@ -46,17 +48,17 @@ def chart_command(request: ChartRequest) -> None:
     if not request.seconds > 0:
         raise InputError("--seconds", "", request.seconds, "above 0 s")
     law = options_of(request.law)
-    name, design = named_design(request.source)
-    say_findings(design)
+    question = question_of(request.source, request.law, law)
+    say_findings(question.design)
     if request.levels is not None:
-        design = design.model_copy(update={"pressures": levels_of(request.levels)})
-    question = Question.of(name, design, law)
-    folder = request.out or Path("charts") / name
+        changed = {"pressures": levels_of(request.levels)}
+        question = Question.of(question.name, question.design.model_copy(update=changed), law)
+    folder = request.out or Path("charts") / question.name
     threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
     console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
     started = perf_counter()
     with progress_bar("models") as bar:
-        task = bar.add_task(escape(name), total=None, said="starting")
+        task = bar.add_task(escape(question.name), total=None, said="starting")
 
         def show(done: int, total: int, said: str) -> None:
             bar.update(task, completed=done, total=total, said=said)
@@ -74,6 +76,7 @@ def chart_command(request: ChartRequest) -> None:
             progress=show,
         )
     _report(chart, folder)
+    end_with(code_of(chart))
 
 
 def levels_of(text: str) -> tuple[float, float, float]:

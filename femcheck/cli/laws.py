@@ -7,6 +7,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.progress import console
 from femcheck.material.catalogue import MATERIALS, Constant, constants_of, law_by_name
 from femcheck.material.differentiate import PressureTerm, differences, random_deformations
@@ -48,7 +49,7 @@ def laws_command() -> None:
     for line in wrong:
         console.print(line, soft_wrap=True, markup=False)
     if wrong:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
 def _laws() -> list[Law]:

@@ -10,10 +10,12 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.files import csv_text, write_atomic
+from beamopt.files import check_replaceable, csv_text, write_atomic
 from beamopt.provenance import thread_settings
+from femcheck.cli.verdicts import code_of
 from femcheck.continuation.ended import Ended
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.moved import Moved, said
@@ -46,16 +48,24 @@ def baseline_command(
             )
     except ContradictionError as error:
         console.print(f"nothing is written: {error}", soft_wrap=True, markup=False)
-        raise typer.Exit(1) from None
+        raise typer.Exit(ExitCode.DOES_NOT_HOLD) from None
     seconds = perf_counter() - started
     many = "s" if len(files) > 1 else ""
     console.print(f"{len(files)} baseline{many} in {out}/, {seconds:.0f} s", markup=False)
 
 
 def regress_command(
-    designs: list[str], baseline: Path, meshes: Path, workers: int, out: Path | None
+    designs: list[str],
+    baseline: Path,
+    meshes: Path,
+    workers: int,
+    out: Path | None,
+    *,
+    force: bool = False,
 ) -> None:
     """Compute what is held anew; end with 1 and a table if anything moved."""
+    if out is not None:
+        check_replaceable(out, HEADER, "femcheck regress", force=force)
     started = perf_counter()
     _say_threads(workers)
     with _Shown() as shown:
@@ -81,7 +91,7 @@ def regress_command(
         _say_late(found.late)
     if found.moved:
         console.print(f"lowest rung that moved: {found.lowest}", soft_wrap=True, markup=False)
-    raise typer.Exit(1)
+    end_with(code_of(found))
 
 
 def _findings_of(designs: Sequence[str]) -> Callable[[HeldDesign], None]:

@@ -7,13 +7,12 @@ from pathlib import Path
 
 from beamopt.cli.progress import console
 from beamopt.errors import InputError
-from beamopt.files import write_atomic
+from beamopt.files import check_replaceable, write_atomic
 
 __all__ = ["report_command"]
 
 ENDINGS = (".html", ".htm")
 LARGE = 8.0  # MB: above that mail servers and phones make trouble
-HEAD = 1000  # bytes at the beginning of a file in which a report has its mark
 
 
 def report_command(runs: Sequence[Path], out: Path, title: str, *, force: bool) -> None:
@@ -28,17 +27,10 @@ def report_command(runs: Sequence[Path], out: Path, title: str, *, force: bool) 
 
     if out.suffix.lower() not in ENDINGS:
         raise InputError("--out", "", out.name, "must end in .html")
-    if out.is_dir():
-        raise InputError(out, "", None, "is a folder; name a file")
-    if out.exists() and not force:
-        with out.open("rb") as stream:
-            head = stream.read(HEAD)
-        if MARK.encode() not in head:
-            said = "is no report of ours; --force writes over it all the same"
-            raise InputError(out, "", None, said)
-    page = report_page(runs, title)
+    check_replaceable(out, MARK, "femcheck report", force=force)
+    page = report_page(runs, title).encode("utf-8", "backslashreplace")  # names of any bytes
     write_atomic(out, page)
-    size = len(page.encode("utf-8")) / 1e6
+    size = len(page) / 1e6
     console.print(f"{out}  {size:.2f} MB", soft_wrap=True, markup=False, highlight=False)
     if size > LARGE:
         said = f"above {LARGE:g} MB: slow to open, may be too large to send; take fewer folders"

@@ -17,12 +17,12 @@ from femcheck.material.catalogue import MATERIALS
 from femcheck.material.fibre import Thread
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher
-from femcheck.prediction.options import PredictionOptions
+from femcheck.prediction.options import WOUND, PredictionOptions
 from femcheck.solid.winding import Wound
 
 __all__ = ["RunRequest", "options_of"]
 
-RIGID, WOUND = "rigid-section", "wound"
+RIGID = "rigid-section"
 KEYS = {"sizes": "size", "poisson_ratio": "nu"}  # options that are called otherwise in the code
 
 
@@ -30,7 +30,7 @@ KEYS = {"sizes": "size", "poisson_ratio": "nu"}  # options that are called other
 class RunRequest:
     """The options as they were given."""
 
-    designs: list[Path]
+    designs: list[str]
     out: Path | None = None
     seal: float | None = None
     agree: str = "5%"
@@ -105,16 +105,14 @@ def _refuse_of_materials(request: RunRequest) -> None:
 def _material(request: RunRequest) -> dict[str, Any]:
     """The law, its constants, and what is wound."""
     wound = None if request.wind is None else _wound(request.wind)
-    if request.law == WOUND and wound is None:
-        wound = Wound.CHAMBERS
-    if request.winding is not None and wound is None:
+    if request.winding is not None and wound is None and request.law != WOUND:
         raise InputError("--winding", "", request.winding, "goes with --law wound or --wind")
     try:
         thread = Thread(1e5 if request.winding is None else request.winding)
     except ValueError:
         raise InputError("--winding", "", request.winding, "N/m, above 0") from None
     return {
-        "law": "neo-hookean" if request.law == WOUND else request.law,
+        "law": request.law,
         "poisson_ratio": 0.5 if request.nu is None else request.nu,
         "constants": dict(_constant(text) for text in request.constants),
         "wound": wound,

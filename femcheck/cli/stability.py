@@ -11,9 +11,11 @@ from time import perf_counter
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.cli.exit_codes import end_with
 from beamopt.cli.progress import console, progress_bar
 from beamopt.errors import InputError
 from beamopt.provenance import thread_settings
+from femcheck.cli.verdicts import code_of
 from femcheck.stability.axes import AXES
 from femcheck.stability.found import AxisFound, agreement_of
 from femcheck.stability.run import redraw_map, run_map
@@ -42,6 +44,7 @@ def stability_command(request: StabilityRequest) -> None:
     _report(found)
     files = f"files: {request.out}/ (reading.md, stability.png, …)"
     console.print(files, soft_wrap=True, markup=False)
+    end_with(code_of(found))
 
 
 def _check(request: StabilityRequest) -> None:

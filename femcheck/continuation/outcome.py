@@ -11,7 +11,14 @@ __all__ = ["Outcome", "Statistics", "Status"]
 
 
 class Status(Enum):
-    """How a case ended; the value is the text shown to people."""
+    """How a case ended; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Status.LIMIT_POINT.is_physical
+    True
+    """
 
     CONVERGED = "converged"
     LIMIT_POINT = "limit point"

@@ -138,6 +138,12 @@ def law_by_name(
     ------
     InputError : an unknown name or constant, a value that can not be used, or constants in kPa of
         another E.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.law_by_name("gent", 300.0, constants={"Jm": 30.0}).name
+    'gent'
     """
     shape = _shape(name, constants)
     given = modulus_of(name, poisson_ratio, constants)

@@ -27,6 +27,12 @@ class Thread:
     Raises
     ------
     ValueError : a stiffness or toe that is not positive.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Thread(stiffness=2e4).toe
+    0.004
     """
 
     stiffness: float

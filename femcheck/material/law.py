@@ -13,6 +13,14 @@ class Law(Protocol):
     """An energy W(C) per undeformed volume, axis 3 along the undeformed actuator.
 
     Symmetric tensors are stored as six numbers in the order 11, 22, 33, 12, 23, 13.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import numpy as np
+    >>> law: femcheck.Law = femcheck.law_by_name("neo-hookean", 300.0, 0.4)
+    >>> law.stress(np.array([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]])).shape
+    (1, 6)
     """
 
     @property

@@ -29,6 +29,12 @@ class RigidSection:
     Raises
     ------
     ValueError : a modulus or penalty that is not positive.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.RigidSection(youngs_modulus=300.0, penalty=1000.0).name
+    'rigid-section'
     """
 
     youngs_modulus: float

@@ -7,13 +7,13 @@ shapes, with volumes of the other sign.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from beamopt.arrays import FloatArray
+from beamopt.files import replacing
 from femcheck.mesh.extrusion import Extrusion
 
 __all__ = ["DISPLACEMENT", "TAGS", "VTU_WEDGE", "write_deformed", "write_mesh"]
@@ -81,7 +81,6 @@ def write_deformed(file: Path, body: Extrusion, at: FloatArray) -> None:
 
 
 def _write(file: Path, mesh: Any, form: str) -> None:
-    """To a temporary name, then renamed: a kill never leaves half a file under its name."""
-    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    mesh.write(temporary, file_format=form)
-    temporary.replace(file)
+    """A kill never leaves half a file under its name."""
+    with replacing(file) as temporary:
+        mesh.write(temporary, file_format=form)

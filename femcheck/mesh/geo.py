@@ -23,6 +23,12 @@ class SectionSizes:
     largest : triangles away from walls, in a section of 25 mm outer radius [mm].
     per_wall : edge length over the thickness of the wall behind it.
     growth : of the size with the distance from an edge.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.SectionSizes(factor=2.0).largest
+    5.0
     """
 
     factor: float = 1.0

@@ -9,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -18,7 +17,9 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.brief import Brief, changed_fields
+from beamopt.files import naming
 from beamopt.outline.outline import Outline
+from beamopt.scratch import scratch_folder
 from femcheck.mesh.geo import SectionSizes, geo_script, least_triangles
 from femcheck.mesh.section_mesh import SectionMesh
 
@@ -28,7 +29,14 @@ MOST_TRIANGLES = 2_000_000  # gmsh takes a kilobyte for each, a solid thousands
 
 
 class MeshProblem(Enum):
-    """Why there is no mesh; the value is the text shown to people."""
+    """Why there is no mesh; the value is the text shown to people.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.MeshProblem.NO_GMSH.value
+    'gmsh is not installed'
+    """
 
     NO_GMSH = "gmsh is not installed"
     CRASHED = "gmsh crashed"
@@ -52,7 +60,18 @@ class MeshProblem(Enum):
 
 @dataclass(frozen=True, slots=True)
 class MeshFailure:
-    """No mesh, and why."""
+    """No mesh, and why.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> found = femcheck.Mesher("no-such-gmsh").mesh(subject.outline, femcheck.SectionSizes())
+    >>> isinstance(found, femcheck.MeshFailure) and found.problem.name
+    'NO_GMSH'
+    """
 
     problem: MeshProblem
     detail: str = ""
@@ -70,6 +89,12 @@ class Mesher:
 
     command : the executable; None takes the first on the path, then the one beside python.
     seconds : of a clock, after which gmsh is taken to hang; a mesh takes one or two [s].
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.Mesher(seconds=60.0)
+    Mesher(seconds=60.0)
     """
 
     command: str | None = None
@@ -88,9 +113,10 @@ class Mesher:
         command = _find(self.command)
         if command is None:
             return MeshFailure(MeshProblem.NO_GMSH, self.command or "pip install gmsh")
-        with tempfile.TemporaryDirectory(prefix="femcheck-") as folder:
-            script, written = Path(folder) / "section.geo", Path(folder) / "section.msh"
-            script.write_text(geo_script(outline, sizes), encoding="utf-8")
+        with scratch_folder() as folder:
+            script, written = folder / "section.geo", folder / "section.msh"
+            with naming(script):
+                script.write_text(geo_script(outline, sizes), encoding="utf-8")
             arguments = [*command, "-2", "-v", "1", "-format", "msh41"]
             failure = _run([*arguments, "-o", str(written), str(script)], self.seconds)
             if failure is not None:

@@ -18,7 +18,7 @@ PointKey = tuple[int, int]
 
 @dataclass
 class PointWork:
-    """What is to be solved; see `femcheck.check.work`.
+    """What is to be solved; see `beamopt.study.work`.
 
     solids : of one mesh; each begins at the shapes of the one before.
     pressures : (n, 3) [kPa]. limits : of a case.

@@ -30,6 +30,15 @@ class Question:
 
     name : of the design. law : see `LawChoice`.
     pressures : (n, 3) combinations [kPa]; the design's 27 if left out.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> femcheck.Question.of("round", subject.design, femcheck.PredictionOptions(law="gent"))
+    <Question 'round': 27 tips, gent, ν = 0.5, unreinforced>
     """
 
     name: str

@@ -13,12 +13,12 @@ import numpy as np
 from beamopt.arrays import FloatArray
 from beamopt.design import Design
 from beamopt.study.pool import in_process, processes
+from beamopt.study.work import solve_all
 from beamopt.workspace import node_index
 from femcheck.check.case import CaseResult, Solid
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Schedule
 from femcheck.check.stage import Stage
-from femcheck.check.work import solve_all
 from femcheck.continuation.ended import FOUND, Ended
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Status

@@ -15,7 +15,10 @@ from femcheck.material.law import Law
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.winding import Wound
 
-__all__ = ["PredictionOptions"]
+__all__ = ["WOUND", "PredictionOptions"]
+
+WOUND = "wound"
+"""The law of a name that says what is wound too."""
 
 SAME = 5e-3  # share by which a shear modulus may differ from E/(2(1 + ν)), which files round
 
@@ -26,7 +29,8 @@ class PredictionOptions(SolidOptions):
 
     Parameters
     ----------
-    law : name of a material.
+    law : name of a material; "wound" is neo-hookean with every chamber wound, unless `wound` says
+        otherwise.
     poisson_ratio : ν; ½ is incompressible.
     constants : in place of the law's published ones.
     wound : which surfaces are wound with thread; None where none is.
@@ -35,6 +39,12 @@ class PredictionOptions(SolidOptions):
     Raises
     ------
     InputError : a value that can not be used, with what is allowed.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> femcheck.PredictionOptions(law="wound").title
+    'neo-hookean, ν = 0.5, chambers wound'
     """
 
     law: str = "neo-hookean"
@@ -47,6 +57,9 @@ class PredictionOptions(SolidOptions):
 
     def __post_init__(self) -> None:
         SolidOptions.__post_init__(self)
+        if self.law == WOUND:
+            object.__setattr__(self, "law", "neo-hookean")
+            object.__setattr__(self, "wound", self.wound or Wound.CHAMBERS)
         E = modulus_of(self.law, self.poisson_ratio, self.constants) or 1.0
         law = law_by_name(self.law, E, self.poisson_ratio, self.constants)
         if law.volumetric_compliance is not None and not ELEMENTS[self.element].has_pair:

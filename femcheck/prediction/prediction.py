@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
 from beamopt.brief import Brief
+from femcheck.check.beside_beam import BesideBeam
 from femcheck.check.case import Solid
 from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
@@ -24,14 +25,14 @@ from femcheck.prediction.rays import Ray
 from femcheck.prediction.two_meshes import Agreement, RayEnds, SafeBox, safe_box
 from femcheck.prediction.work import RayKey
 
-__all__ = ["Prediction"]
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
-SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothing
-STILL = 1e-9  # mm
+__all__ = ["Prediction"]
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(BesideBeam):
     """What a design of a real material does at its 27 pressure combinations.
 
     failure : why there is no solid; results are then empty.
@@ -39,6 +40,18 @@ class Prediction:
     rays, places : through the combinations; each combination's ray and load, None without pressure.
     results : of every ray on the standard mesh; on the coarse one of the principal rays and of
         those that decide the verdict.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> without = femcheck.PredictionOptions(mesher=femcheck.Mesher("no-such-gmsh"))
+    >>> found = femcheck.predict_design(subject, Path("predicted"), without)
+    >>> found.has_answers
+    False
     """
 
     subject: Subject
@@ -52,15 +65,22 @@ class Prediction:
     results: Mapping[RayKey, RayResult]
 
     def __repr__(self) -> str:
-        name = Brief(self.subject.name)
-        if self.failure is not None:
-            return f"<Prediction {name}: {Brief(str(self.failure))}>"
+        name, failure = Brief(self.subject.name), self.failure
+        if failure is not None:
+            return f"<Prediction {name}: {failure!r}>"
         found = int(self.is_loaded.sum()) - self.unanswered
         return (
             f"<Prediction {name}: {self.options.title}, {found} of {self.is_loaded.sum()} "
             f"combinations answered, beam off by {100 * self.worst:.3g} % of displacement, "
             f"safe up to {self.safe_box.pressure:.4g} kPa>"
         )
+
+    def to_frame(self) -> DataFrame:
+        """Tips of solid and beam (`compare.csv`), as a data frame (needs pandas)."""
+        from beamopt.frames import frame_of
+        from femcheck.prediction.comparison_table import compare_csv
+
+        return frame_of(compare_csv(self))
 
     @property
     def has_answers(self) -> bool:
@@ -118,11 +138,6 @@ class Prediction:
         return float(last.volumes @ weights / rest) if last is not None and rest > 0 else np.nan
 
     @cached_property
-    def is_loaded(self) -> NDArray[np.bool_]:
-        """(27,) whether any supply has pressure."""
-        return np.array([place is not None for place in self.places])
-
-    @cached_property
     def tips(self) -> FloatArray:
         """(27, 3) tips [mm], the base's material centroid at the origin; NaN without an answer."""
         return self.tips_on("standard")
@@ -142,47 +157,14 @@ class Prediction:
         return tips
 
     @property
-    def difference(self) -> FloatArray:
-        """(27,) between the beam's tip and the solid's [mm]; NaN without an answer."""
-        return np.asarray(np.linalg.norm(self.tips - self.subject.beam_tips, axis=1))
-
-    @property
-    def displacement(self) -> FloatArray:
-        """(27,) of the beam's tip [mm]."""
-        straight = np.array([0, 0, self.subject.design.actuator.length])
-        return np.asarray(np.linalg.norm(self.subject.beam_tips - straight, axis=1))
-
-    @property
-    def share(self) -> FloatArray:
-        """(27,) difference over the beam's displacement, or a hundredth of the largest one."""
-        return np.asarray(self.difference / self._moved)
-
-    @property
-    def _moved(self) -> FloatArray:
-        least = max(SMALLEST_DISPLACEMENT * float(self.displacement.max()), STILL)
-        return np.asarray(np.maximum(self.displacement, least))
+    def solid_tips(self) -> FloatArray:
+        """(27, 3) the tips on the standard mesh [mm]."""
+        return self.tips
 
     @property
     def discretisation(self) -> FloatArray:
         """(27,) change of the tip from the coarse mesh to the standard one [mm]; NaN: not known."""
         return np.asarray(np.linalg.norm(self.tips - self.tips_on("coarse"), axis=1))
-
-    @property
-    def unanswered(self) -> int:
-        """Loaded combinations without a stable answer."""
-        return int((self.is_loaded & np.isnan(self.tips[:, 0])).sum())
-
-    @property
-    def worst(self) -> float:
-        """Largest share over the loaded combinations with an answer; NaN without any."""
-        shares = self.share[self.is_loaded & ~np.isnan(self.share)]
-        return float(shares.max()) if shares.size else float("nan")
-
-    @property
-    def median(self) -> float:
-        """Median share over the loaded combinations with an answer; NaN without any."""
-        shares = self.share[self.is_loaded & ~np.isnan(self.share)]
-        return float(np.median(shares)) if shares.size else float("nan")
 
     @property
     def first_to_end(self) -> int | None:

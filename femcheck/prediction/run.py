@@ -14,12 +14,13 @@ import femcheck.picture as picture
 from beamopt.arrays import FloatArray
 from beamopt.plot.style import save_figure
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.case import Solid
 from femcheck.check.folder import CheckFolder
 from femcheck.check.meshes import heights_of, section_meshes
 from femcheck.check.subject import Subject
-from femcheck.check.work import solve_all
 from femcheck.continuation.outcome import Status
+from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import quality_of
 from femcheck.prediction.figures import axis_figure, paths_figure
@@ -62,14 +63,42 @@ def predict_design(
     Raises
     ------
     InputError : `out` holds something else, or the material contradicts the design's moduli.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> low = subject.design.model_copy(update={"pressures": (0.0, 1.0, 2.0)})
+    >>> quick = femcheck.PredictionOptions(
+    ...     poisson_ratio=0.4, layers=2, element="tet4", sizes=femcheck.SectionSizes(factor=9.0)
+    ... )
+    >>> found = femcheck.predict_design(femcheck.Subject("low", low), Path("predicted"), quick)
+    >>> found.unanswered
+    0
     """
     law = options.law_for(subject.design.actuator)
-    folder = CheckFolder.open(out, subject, options.question, resume=resume)
+    with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
+        found = _predicted(subject, folder, options, law, workers, progress, pool)
+        _write(folder, found)
+    return found
+
+
+def _predicted(
+    subject: Subject,
+    folder: CheckFolder,
+    options: PredictionOptions,
+    law: Law,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> Prediction:
+    """Follow what was not followed yet."""
     sections = section_meshes(subject, options)
     if isinstance(sections, MeshFailure):
-        found = Prediction(subject, options, law, sections, None, {}, (), (), {})
-        _write(folder, found)
-        return found
+        return Prediction(subject, options, law, sections, None, {}, (), (), {})
     wound = None if options.wound is None else (options.wound, options.thread)
     heights = heights_of(subject, options)
     solids = {
@@ -99,9 +128,7 @@ def predict_design(
     found = follow()
     # no verdict is to stand on one mesh alone
     work.asked = {n for n in found.decisive if not found.result(n).status.is_interrupted}
-    found = follow()
-    _write(folder, found)
-    return found
+    return follow()
 
 
 def _take_kept(folder: CheckFolder, work: RayWork) -> None:
@@ -136,9 +163,6 @@ def _write(folder: CheckFolder, found: Prediction) -> None:
     folder.write(tables_of(found))
     if not found.has_answers or not found.rays:
         folder.without_answer()
-        for name in FIGURES:
-            for ending in ("png", "svg"):
-                (folder.path / f"{name}.{ending}").unlink(missing_ok=True)
         return
     for name, draw in zip(FIGURES, (paths_figure, axis_figure), strict=True):
         ends = [folder.path / f"{name}.{ending}" for ending in ("png", "svg")]

@@ -10,12 +10,12 @@ import numpy as np
 
 from beamopt.arrays import FloatArray
 from beamopt.files import csv_text, json_text
-from femcheck.check.tables import COMPARE, DIGITS, both, cells, plain
+from femcheck.check.tables import DIGITS, both, cells, plain
 from femcheck.continuation.ended import Ended
 from femcheck.material.catalogue import constants_of
 from femcheck.material.isotropic import Isotropic
 from femcheck.material.law import Law
-from femcheck.prediction.answer import Answer
+from femcheck.prediction.comparison_table import compare_csv, ratios_of, stretch_cells
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import TRACK
 from femcheck.prediction.two_meshes import AGREE, GROWTH, MARGIN, Agreement, RayEnds
@@ -23,7 +23,6 @@ from femcheck.prediction.verdict import advice, verdict
 
 __all__ = ["tables_of"]
 
-MORE = ",ends_at_kpa,snaps_at_kpa,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z"
 LIMITS = (
     "mesh,d1,d2,d3,status,ended,ends_at_kpa,stable_up_to_kpa,volume_ratio_1,volume_ratio_2,"
     "volume_ratio_3,largest_stretch,stretch_at_x,stretch_at_y,stretch_at_z,mode_at_x,mode_at_y,"
@@ -39,8 +38,8 @@ AXIS = (
 def tables_of(found: Prediction) -> dict[str, str | None]:
     """All files that are text; None where there is nothing to say."""
     files: dict[str, str | None] = {"summary.json": json_text(_summary(found))}
+    files["compare.csv"] = compare_csv(found) if found.has_answers else None
     tables = {
-        "compare.csv": (COMPARE + MORE, _compare),
         "limits.csv": (LIMITS, _limits),
         "paths.csv": ("mesh,d1,d2,d3," + ",".join(TRACK), _paths),
         "axis.csv": (AXIS, _axis),
@@ -51,49 +50,6 @@ def tables_of(found: Prediction) -> dict[str, str | None]:
     return files
 
 
-def _compare(found: Prediction) -> Iterator[tuple[object, ...]]:
-    """Every combination on the standard mesh, those of the principal rays on the coarse one."""
-    subject, length = found.subject, found.subject.design.actuator.length
-    beam, displacement = subject.beam_tips, found.displacement
-    for mesh in found.solids:
-        tips = found.tips_on(mesh)
-        difference = np.linalg.norm(tips - beam, axis=1)
-        for row, pressures in enumerate(subject.pressures.tolist()):
-            place, moved = found.places[row], displacement[row]
-            if place is not None and (mesh, place[0]) not in found.results:
-                continue
-            answer = found.answer(row, mesh)
-            yield (
-                found.options.law,
-                None,
-                found.options.poisson_ratio,
-                mesh,
-                *map(plain, pressures),
-                *cells(beam[row]),
-                *cells(tips[row]),
-                *cells([difference[row], difference[row] / length]),
-                *cells([difference[row] / moved if moved > 0 else math.nan]),
-                *cells(_ratios(found, mesh, answer)),
-                *both(found.status(row, mesh)),
-                *cells([found.ended_at(row, mesh), found.snap(row, mesh)]),
-                *_stretched(answer),
-            )
-
-
-def _ratios(found: Prediction, mesh: str, answer: Answer | None) -> FloatArray:
-    """(3,) volume of each supply's chambers over that at rest; NaN for a supply without any."""
-    if answer is None:
-        return np.full(3, np.nan)
-    length = found.subject.design.actuator.length
-    rest = found.solids[mesh].section.moments.chamber_areas * length
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.where(rest > 0, answer.volumes / rest, np.nan))
-
-
-def _stretched(answer: Answer | None) -> list[object]:
-    return [None] * 4 if answer is None else cells([answer.stretch, *answer.stretch_at])
-
-
 def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
     for (mesh, number), result in sorted(found.results.items(), key=lambda item: item[0][::-1]):
         last = result.last
@@ -102,8 +58,8 @@ def _limits(found: Prediction) -> Iterator[tuple[object, ...]]:
             *map(plain, found.rays[number].direction),
             *both(result.status),
             *cells([result.critical, math.nan if last is None else last.load]),
-            *cells(_ratios(found, mesh, last)),
-            *_stretched(last),
+            *cells(ratios_of(found, mesh, last)),
+            *stretch_cells(last),
             *cells([*result.mode_at, result.mode_share]),
             len(result.track),
             result.statistics.steps,
@@ -245,7 +201,7 @@ def _limit(found: Prediction, ends: RayEnds) -> dict[str, Any]:
     """The end of a ray, with both meshes' figures."""
     ray, result, coarse = ends.ray, ends.standard, ends.coarse
     last = result.last
-    ratios = _ratios(found, "standard", last)
+    ratios = ratios_of(found, "standard", last)
     return {
         "of": ray.text,
         "status": result.status.value,

@@ -31,7 +31,19 @@ BALLOON = 1.5  # growth of the chambers at a limit point above which it is no wa
 
 
 def verdict(found: Prediction) -> str:
-    """What happens, and whether the beam's workspace exists."""
+    """What happens, and whether the beam's workspace exists.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> from pathlib import Path
+    >>> import beamopt
+    >>> drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
+    >>> subject = femcheck.sealed_copy("round", drawn, 1.0)
+    >>> without = femcheck.PredictionOptions(mesher=femcheck.Mesher("no-such-gmsh"))
+    >>> print(femcheck.verdict(femcheck.predict_design(subject, Path("judged"), without)))
+    no answer: gmsh is not installed: no-such-gmsh
+    """
     if found.failure is not None:
         return f"no answer: {found.failure}"
     if not found.is_loaded.any():

@@ -19,7 +19,7 @@ RayKey = tuple[str, int]
 
 @dataclass
 class RayWork:
-    """What is to be traced; see `femcheck.check.work`.
+    """What is to be traced; see `beamopt.study.work`.
 
     solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, and
     those that are `asked` for, for an estimate of the mesh's error. limits : of a ray.

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 
 from beamopt.errors import InputError
-from beamopt.files import json_text, write_atomic
+from beamopt.files import check_replaceable, json_text, write_atomic
+from beamopt.folder import FolderKind
 from beamopt.input_file import read_json
 from beamopt.model import Model, Number, parse
 from beamopt.model import quantity as described
@@ -20,8 +21,10 @@ from femcheck.regression.held_design import HeldDesign, design_digest
 from femcheck.regression.kept_mesh import mesh_digest
 
 __all__ = [
+    "KIND",
     "Baseline",
     "baseline_file",
+    "check_baseline_file",
     "check_unchanged",
     "read_baseline",
     "still_held",
@@ -29,6 +32,7 @@ __all__ = [
 ]
 
 SCHEMA = "femcheck-baseline/1"
+KIND = FolderKind("baselines", "*.json", ('{"schema":"femcheck-baseline/',))
 
 
 def _known(rung: str) -> str:
@@ -96,17 +100,28 @@ def baseline_file(folder: Path, name: str) -> Path:
     return folder / f"{name}.json"
 
 
+def check_baseline_file(folder: Path, design: HeldDesign, *, force: bool) -> None:
+    """Refuse to write a baseline over what is none.
+
+    Raises
+    ------
+    InputError : the design itself stands under that name, or a file that is no baseline and `force`
+        is off.
+    """
+    file = baseline_file(folder, design.name)
+    if design.file is not None and file.resolve() == design.file.resolve():
+        raise InputError(file, "", None, "is the design itself: another folder for its baseline")
+    check_replaceable(file, SCHEMA, "femcheck baseline", force=force)
+
+
 def write_baseline(folder: Path, design: HeldDesign, held: tuple[Held, ...]) -> Path:
     """Write what is held of a design, with no more digits than its tolerances leave a meaning to.
 
     Raises
     ------
-    InputError : the design itself stands under that name.
     OSError : the folder is missing or can not be written.
     """
     file = baseline_file(folder, design.name)
-    if design.file is not None and file.resolve() == design.file.resolve():
-        raise InputError(file, "", None, "is the design itself: another folder for its baseline")
     where = None if design.file is None else Path(os.path.relpath(design.file, folder)).as_posix()
     content = {
         "design": {"digest": design_digest(design.design), "file": where},

@@ -16,9 +16,9 @@ from beamopt.bundled import bundled_scenes
 from beamopt.design import Design, load_design
 from beamopt.errors import InputError
 from beamopt.folder import design_file
+from beamopt.named import name_of
 from beamopt.scene import load_scene
 from femcheck.check.subject import sealed_copy
-from femcheck.models.named import name_of
 from femcheck.regression.held import LADDER
 
 __all__ = ["BUNDLED", "HeldDesign", "design_digest", "find_design"]

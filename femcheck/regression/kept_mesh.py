@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from beamopt.design import Design
 from beamopt.errors import InputError
+from beamopt.files import check_replaceable, replacing
 from beamopt.input_file import MOST_MESH, check_regular, read_bytes
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
@@ -19,11 +19,20 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, read_section
 from femcheck.mesh.section_mesh import SectionMesh
 
-__all__ = ["KeptMesher", "is_of", "make_section", "mesh_digest", "read_kept", "write_section"]
+__all__ = [
+    "KeptMesher",
+    "check_mesh_file",
+    "is_of",
+    "make_section",
+    "mesh_digest",
+    "read_kept",
+    "write_section",
+]
 
 COARSER = 10.0  # times as far from the smooth outline as a design's own edges
 SIZES = SectionSizes(factor=4.0, growth=5.0)
 MATERIAL_GROUP = 10
+MARK = "$Comments\ndesign "
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +84,17 @@ def is_of(file: Path, digest: str) -> bool:
 
 def _comment(digest: str) -> str:
     """A section of gmsh's format that readers pass over."""
-    return f"$Comments\ndesign {digest}\n$EndComments\n"
+    return f"{MARK}{digest}\n$EndComments\n"
+
+
+def check_mesh_file(file: Path, *, force: bool) -> None:
+    """Refuse to write a mesh over a file that was not written by `write_section`.
+
+    Raises
+    ------
+    InputError : it is one, and `force` is off.
+    """
+    check_replaceable(file, MARK, "femcheck baseline", force=force)
 
 
 def write_section(file: Path, section: SectionMesh, digest: str) -> None:
@@ -90,14 +109,10 @@ def write_section(file: Path, section: SectionMesh, digest: str) -> None:
     marked = {"gmsh:physical": groups, "gmsh:geometrical": groups}
     flat = np.column_stack([section.points, np.zeros(len(section.points))])
     mesh = meshio.Mesh(flat, cells, cell_data=marked)
-    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    try:
+    with replacing(file) as temporary:
         meshio.gmsh.write(temporary, mesh, fmt_version="2.2", binary=False)
         with temporary.open("a", encoding="utf-8", newline="\n") as stream:
             stream.write(_comment(digest))
-        temporary.replace(file)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def mesh_digest(file: Path) -> str:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from glob import escape
 from pathlib import Path
 
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
+from beamopt.folder import claimed, clear_leftovers
 from beamopt.provenance import provenance
 from femcheck.regression.agreement import contradictions
 from femcheck.regression.baseline import (
+    KIND,
     Baseline,
     baseline_file,
+    check_baseline_file,
     check_unchanged,
     read_baseline,
     still_held,
@@ -20,12 +24,14 @@ from femcheck.regression.baseline import (
 )
 from femcheck.regression.held import LADDER, Held, is_late
 from femcheck.regression.held_design import BUNDLED, HeldDesign, design_digest, find_design
-from femcheck.regression.kept_mesh import is_of, make_section, write_section
+from femcheck.regression.kept_mesh import check_mesh_file, is_of, make_section, write_section
 from femcheck.regression.measure import Measured, measure_all, parts_of
 from femcheck.regression.moved import Moved, compare, lowest
 
 __all__ = ["ContradictionError", "Regression", "hold_designs", "regress", "update_baseline"]
 
+PROVENANCE = "provenance.json"
+WAITING = 600.0  # s, for another update of the same folder
 LIBRARIES = ("scikit-fem", "pypardiso", "gmsh", "meshio")
 
 Callback = Callable[[str, str, int], None]
@@ -79,27 +85,40 @@ def hold_designs(
 
     Raises
     ------
-    InputError : a baseline is there already and `force` is not given; no such design.
+    InputError : a baseline, or another file in the place of one or of its mesh, is there already
+        and `force` is not given; the folder has other files and no baseline; no such design.
     ContradictionError : independent rungs contradict each other; nothing is written.
     """
     designs = [find_design(name, meshes) for name in names or BUNDLED]
     _check_names(designs)
     _call(named, designs if names else ())
-    there = [baseline_file(folder, one.name) for one in designs]
-    for file in there:
+    for one in designs:
+        check_baseline_file(folder, one, force=force)
+        file = baseline_file(folder, one.name)
         if file.exists() and not force:
             raise InputError(file, "", None, "there already; --force writes it anew")
-    folder.mkdir(parents=True, exist_ok=True)
+    with claimed(folder, KIND, resume=True):
+        _clear(folder, designs)
+        for one in designs:
+            _have_mesh(one, force=force)
+        measured = measure_all(
+            designs, estimate=True, workers=workers, callback=_counted(callback, designs)
+        )
+        wrong = [f"{one.name}: {said}" for one in designs for said in _wrong(one, measured)]
+        if wrong:
+            raise ContradictionError("; ".join(wrong))
+        files = [write_baseline(folder, one, measured[one.name].held) for one in designs]
+        write_atomic(folder / PROVENANCE, json_text(provenance(LIBRARIES)))
+    return files
+
+
+def _clear(folder: Path, designs: Sequence[HeldDesign]) -> None:
+    """Delete what a kill left of writing the baselines of these designs."""
+    names = [baseline_file(folder, one.name).name for one in designs]
+    clear_leftovers(folder, [*map(escape, names), PROVENANCE])
     for one in designs:
-        _have_mesh(one)
-    measured = measure_all(
-        designs, estimate=True, workers=workers, callback=_counted(callback, designs)
-    )
-    wrong = [f"{one.name}: {said}" for one in designs for said in _wrong(one, measured[one.name])]
-    if wrong:
-        raise ContradictionError("; ".join(wrong))
-    write_atomic(folder / "provenance.json", json_text(provenance(LIBRARIES)))
-    return [write_baseline(folder, one, measured[one.name].held) for one in designs]
+        if one.mesh.parent.is_dir():
+            clear_leftovers(one.mesh.parent, [escape(one.mesh.name)])
 
 
 def update_baseline(design: HeldDesign, folder: Path, rungs: Collection[str] | None = None) -> Path:
@@ -109,22 +128,26 @@ def update_baseline(design: HeldDesign, folder: Path, rungs: Collection[str] | N
 
     Raises
     ------
-    InputError : no mesh of its section; a rung that is wanted and that the design does not have.
+    InputError : no mesh of its section; a rung that is wanted and that the design does not have;
+        a file that is no baseline, or no mesh of one, in its place.
     ContradictionError : independent rungs contradict each other; nothing is written.
     """
     if rungs is not None:
         design = replace(design, rungs=frozenset(rungs))
-    folder.mkdir(parents=True, exist_ok=True)
-    _have_mesh(design)
-    measured = measure_all([design], estimate=True)[design.name]
-    wrong = _wrong(design, measured)
-    if wrong:
-        raise ContradictionError(f"{design.name}: {'; '.join(wrong)}")
-    if rungs is not None:
-        _require(rungs, {one.rung for one in measured.held}, design.name, "of this design there is")
-    rest = still_held(baseline_file(folder, design.name), design)
-    held = sorted((*rest, *measured.held), key=lambda one: LADDER.index(one.rung))
-    return write_baseline(folder, design, tuple(held))
+    check_baseline_file(folder, design, force=False)
+    with claimed(folder, KIND, resume=True, patience=WAITING):
+        _clear(folder, [design])
+        _have_mesh(design, force=False)
+        measured = measure_all([design], estimate=True)
+        wrong = _wrong(design, measured)
+        if wrong:
+            raise ContradictionError(f"{design.name}: {'; '.join(wrong)}")
+        now = measured[design.name].held
+        if rungs is not None:
+            _require(rungs, {one.rung for one in now}, design.name, "of this design there is")
+        rest = still_held(baseline_file(folder, design.name), design)
+        held = sorted((*rest, *now), key=lambda one: LADDER.index(one.rung))
+        return write_baseline(folder, design, tuple(held))
 
 
 def regress(
@@ -209,7 +232,7 @@ def _require_bundled(folder: Path, found: Sequence[tuple[HeldDesign, Baseline]])
 
 
 def _all_in(folder: Path) -> list[str]:
-    names = sorted(file.stem for file in folder.glob("*.json") if file.name != "provenance.json")
+    names = sorted(file.stem for file in folder.glob("*.json") if file.name != PROVENANCE)
     if not names:
         raise InputError(folder, "", None, "no baseline here: `femcheck baseline` writes them")
     return names
@@ -222,18 +245,23 @@ def _check_names(designs: Sequence[HeldDesign]) -> None:
             raise InputError("", "DESIGN", name, "twice: every design needs a name of its own")
 
 
-def _have_mesh(design: HeldDesign) -> None:
-    """Make the small mesh of a design that has a solid; one of the design as it is is kept."""
+def _have_mesh(design: HeldDesign, *, force: bool) -> None:
+    """Make the small mesh of a design that has a solid; one of the design as it is is kept.
+
+    force : whether it may take the place of a file that is no such mesh.
+    """
     digest = design_digest(design.design)
     is_meshed = any(part not in ("sections", "rods") for part in parts_of(design))
     if is_meshed and not is_of(design.mesh, digest):
+        check_mesh_file(design.mesh, force=force)
         design.mesh.parent.mkdir(parents=True, exist_ok=True)
         write_section(design.mesh, make_section(design.design), digest)
 
 
-def _wrong(design: HeldDesign, measured: Measured) -> list[str]:
-    broken = [measured.broken] if measured.broken else []
-    return broken + contradictions(measured.held, design.design.actuator.length)
+def _wrong(design: HeldDesign, measured: Mapping[str, Measured]) -> list[str]:
+    found = measured[design.name]
+    broken = [found.broken] if found.broken else []
+    return broken + contradictions(found.held, design.design.actuator.length)
 
 
 def _call(callback: DesignCallback | None, designs: Sequence[HeldDesign]) -> None:

@@ -66,9 +66,13 @@ class Record:
         value = self._value(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(self.file, key, value, "must be a number")
-        if not math.isfinite(value):
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number beyond every float
+            number = math.inf
+        if not math.isfinite(number):
             raise InputError(self.file, key, value, "must be a finite number")
-        return float(value)
+        return number
 
     def number_or_nan(self, key: str) -> float:
         """A finite number; NaN where it is null or not there."""

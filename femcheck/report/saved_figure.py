@@ -12,7 +12,8 @@ from beamopt.input_file import read_text
 
 __all__ = ["SavedFigure", "read_figures", "shape_of"]
 
-NUMBER = re.compile(r"\s*([0-9.]+)")
+SIZE = re.compile(r"\s*([0-9]{1,9}(?:\.[0-9]*)?|\.[0-9]+)[a-z%]*\s*")
+USUAL = 1.5  # width over height of a figure that does not say its size as a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,6 @@ def shape_of(svg: str, file: object) -> float:
         raise InputError(file, "", None, f"no whole SVG file: {error}") from None
     if not root.tag.endswith("svg"):
         raise InputError(file, "", root.tag, "must be an SVG figure")
-    sizes = [NUMBER.match(root.get(key, "")) for key in ("width", "height")]
+    sizes = [SIZE.fullmatch(root.get(key, "")) for key in ("width", "height")]
     width, height = (float(size[1]) if size else 0.0 for size in sizes)
-    return width / height if width > 0 and height > 0 else 1.5
+    return width / height if width > 0 and height > 0 else USUAL

@@ -19,7 +19,14 @@ __all__ = ["Winding", "Wound", "wind"]
 
 
 class Wound(Enum):
-    """What is wound; the value is the name that files and the command line use."""
+    """What is wound; the value is the name that files and the command line use.
+
+    Examples
+    --------
+    >>> import femcheck
+    >>> [wound.value for wound in femcheck.Wound]
+    ['chambers', 'outer', 'both']
+    """
 
     CHAMBERS = "chambers"
     OUTER = "outer"

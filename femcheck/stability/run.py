@@ -10,13 +10,13 @@ from typing import Any
 
 from beamopt.errors import InputError
 from beamopt.files import json_text, write_atomic
-from beamopt.folder import claim_folder, clear_leftovers
+from beamopt.folder import FolderKind, claimed, clear_leftovers
 from beamopt.input_file import read_json
 from beamopt.plot.style import save_figure
 from beamopt.provenance import provenance, thread_settings
 from beamopt.study.pool import processes
+from beamopt.study.work import solve_all
 from femcheck.check.folder import PACKAGES
-from femcheck.check.work import solve_all
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
@@ -28,6 +28,7 @@ from femcheck.stability.work import Key, MapWork, Result
 __all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
 
 JOURNAL = "journal.jsonl"
+KIND = FolderKind("a stability map", JOURNAL, ('{"schema":"femcheck-stability/',))
 WRITTEN = "written_with"  # what tables and figure were made with, which may be later
 NAMES = (
     *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),
@@ -64,9 +65,23 @@ def run_map(
     ------
     InputError : `out` holds something else, or the map of other specimens.
     """
-    claim_folder(out, JOURNAL, resume=resume)
-    clear_leftovers(out, (JOURNAL, *NAMES))
-    journal = Journal(out / JOURNAL, axes)
+    with claimed(out, KIND, resume=resume):
+        journal = Journal(out / JOURNAL, axes)
+        clear_leftovers(out, (JOURNAL, *NAMES))
+        made = _solve(out, journal, axes, wanted, workers, progress, pool)
+        return _write(out, axes, journal.results, made, figures)
+
+
+def _solve(
+    out: Path,
+    journal: Journal,
+    axes: Mapping[str, Axis],
+    wanted: Collection[str] | None,
+    workers: int,
+    progress: Progress | None,
+    pool: Pool,
+) -> dict[str, Any]:
+    """Solve what is not solved yet; returns what the map is computed with."""
     known = {key: one for key, one in journal.results.items() if not one.ending.is_interrupted}
     chosen = {name: axis for name, axis in axes.items() if wanted is None or name in wanted}
     work = MapWork(chosen, {key: one for key, one in known.items() if key[0] in chosen})
@@ -82,7 +97,7 @@ def run_map(
     made = {"workers": workers, "threads_of_a_worker": threads, **provenance(PACKAGES)}
     if len(work.results) == before:  # nothing was solved now
         made = _computed_before(out) or made
-    return _write(out, axes, journal.results, made, figures)
+    return made
 
 
 def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> list[AxisFound]:
@@ -95,11 +110,12 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
     path = out / JOURNAL
     if not path.exists():
         raise InputError(path, "", None, "no such file: there is no map to draw again")
-    journal = Journal(path, axes)
-    if not journal.results:
-        raise InputError(path, "", None, f"holds nothing of {', '.join(axes)}")
-    computed = _computed_before(out) or provenance(PACKAGES)
-    return _write(out, axes, journal.results, computed, figures)
+    with claimed(out, KIND, resume=True):
+        journal = Journal(path, axes)
+        if not journal.results:
+            raise InputError(path, "", None, f"holds nothing of {', '.join(axes)}")
+        computed = _computed_before(out) or provenance(PACKAGES)
+        return _write(out, axes, journal.results, computed, figures)
 
 
 def _computed_before(out: Path) -> dict[str, Any]:

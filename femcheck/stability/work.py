@@ -1,4 +1,4 @@
-"""All cells and paths of the map as independent tasks; see `femcheck.check.work`."""
+"""All cells and paths of the map as independent tasks; see `beamopt.study.work`."""
 
 from __future__ import annotations
 

@@ -10,8 +10,10 @@ import pytest
 
 from beamopt.bound.ring import RingMoments
 from beamopt.bound.ring_bound import ring_bound
+from beamopt.bound_folder import KIND
 from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
+from beamopt.folder import LOCK
 from tests.bound.cases import GRID, YOUNG, wanted
 
 TABLE = bundled_scenes()["hand-drawn-workspace"].with_name("hand_drawn_workspace.csv")
@@ -177,6 +179,7 @@ def test_what_a_kill_left_is_gone_on_with(tmp_path: Path) -> None:
     few, out = table(tmp_path / "few.csv", PAIRS), tmp_path / "out"
     bound_of(few, out)
     (out / "bound.json").unlink()
+    (out / LOCK).write_text(KIND.name)
     assert bound_of(few, out)["rows"] == 4
 
 

@@ -1,14 +1,9 @@
 import json
-import os
-import re
-import signal
-import time
 from pathlib import Path
 
 import pytest
 
 from beamopt.errors import InputError
-from beamopt.evolve import journal as journal_module
 from beamopt.evolve.algorithm import GeneticAlgorithm
 from beamopt.evolve.journal import Journal
 from beamopt.optimisation import optimize
@@ -116,29 +111,6 @@ def test_another_seed_is_another_journal(whole: bytes, tmp_path: Path) -> None:
     other = load_scene("hand-drawn-section", ["search.generations=4", "search.seed=1"])
     with pytest.raises(InputError, match="line 2"):
         resumed(whole, tmp_path / "run", other)
-
-
-def test_two_writers_are_one_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(journal_module, "LOCK_PATIENCE", 0.0)
-    path = tmp_path / "journal.jsonl"
-    with Journal(path), pytest.raises(InputError, match=re.escape("another process")):
-        Journal(path)
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
-def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
-    path = tmp_path / "journal.jsonl"
-    with Journal(path):
-        child = os.fork()
-        if child == 0:
-            time.sleep(20)
-            os._exit(0)
-    try:
-        with Journal(path):
-            pass
-    finally:
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
 
 
 @pytest.mark.parametrize(

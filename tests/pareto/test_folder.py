@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
-from beamopt.file_lock import locked
 from beamopt.judge import in_parts
 from beamopt.pareto.run import find_front
 from beamopt.pareto.search import FrontRecord
@@ -122,24 +120,6 @@ def test_two_processes_can_not_write_one_front(
     whole = content(tmp_path)
     again()  # nobody holds it now
     assert content(tmp_path) == whole
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_a_forked_worker_does_not_keep_the_lock(tmp_path: Path) -> None:
-    asking, telling = os.pipe()
-    with locked(tmp_path / "j"):
-        child = os.fork()
-        if child == 0:  # lives until it is told to end
-            os.read(asking, 1)
-            os._exit(0)
-    try:
-        with locked(tmp_path / "j"):
-            assert (tmp_path / "j").read_bytes() == b""
-    finally:
-        os.write(telling, b"x")
-        os.waitpid(child, 0)
-        os.close(asking)
-        os.close(telling)
 
 
 def test_parts_are_put_together_in_order() -> None:

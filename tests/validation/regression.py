@@ -173,6 +173,7 @@ FAULTS = (
 """The first five on all that is held."""
 
 REDUCED = ("a segment's turn with the wrong sign", "a load's frame transposed")
+WHERE = ("--baseline", "reports/baseline", "--meshes", "meshes")
 CHEAP = ("two-segments", "gravity")
 
 
@@ -188,7 +189,7 @@ def regress(fault: Fault | None, designs: tuple[str, ...]) -> tuple[int, str]:
         text = (fault.module, fault.old, fault.new, str(fault.times))
     command = [sys.executable, "-m", "tests.validation.faulty", *text, "regress"]
     done = subprocess.run(
-        [*command, *designs, "--workers", "1"],
+        [*command, *designs, *WHERE, "--workers", "1"],
         cwd=ROOT,
         capture_output=True,
         text=True,

@@ -10,15 +10,23 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from tests.kills import differing
 from tests.validation.check import Check, Row
 
+ENDED = (0, 1)  # exit codes of what was computed, whatever it says
 UNLIKE = {"timing.csv", "provenance.json"}
 
 
 def command(*arguments: str) -> list[str]:
-    return [sys.executable, "-c", "from beamopt.cli import main; main()", *arguments]
+    """What starts a command of beamopt, or of femcheck if that is the first argument."""
+    program, rest = (
+        ("femcheck", arguments[1:]) if arguments[0] == "femcheck" else ("beamopt", arguments)
+    )
+    return [sys.executable, "-c", f"from {program}.cli import main; main()", *rest]
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -40,14 +48,18 @@ def everything(folder: Path) -> dict[str, bytes]:
 def run(arguments: Sequence[str]) -> float:
     """Run to the end; returns seconds."""
     started = time.monotonic()
-    subprocess.run(command(*arguments), check=True, capture_output=True)
+    done = subprocess.run(command(*arguments), check=False, capture_output=True)
+    assert done.returncode in ENDED, done.stderr
     return time.monotonic() - started
 
 
-def killed(arguments: Sequence[str], after: float) -> bool:
+def killed(arguments: Sequence[str], after: float, temporary: Path) -> bool:
     """Run and send SIGKILL after some seconds; whether it was still running."""
     with subprocess.Popen(
-        command(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        command(*arguments),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        env=os.environ | {"TMPDIR": str(temporary)},
     ) as process:
         try:
             _, said = process.communicate(timeout=after)
@@ -55,50 +67,102 @@ def killed(arguments: Sequence[str], after: float) -> bool:
             os.kill(process.pid, signal.SIGKILL)
             process.communicate()
             return True
-    assert process.returncode == 0, said
+    assert process.returncode in ENDED, said
     return False
 
 
-def differing(whole: Path, other: Path) -> list[str]:
-    a, b = content(whole), content(other)
-    return sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
+@dataclass(frozen=True)
+class Chain:
+    """A command that is killed, gone on with, and killed again.
 
-
-def survive(arguments: Sequence[str], kills: int, seed: int) -> tuple[int, int]:
-    """Kill a command `kills` times, over as many folders as that takes.
-
-    Returns how often it was killed and how many files differed from an undisturbed run's.
+    arguments : without `--out`; {small} stands for the file of a small sealed design.
+    goes_on : whether it has `--resume`; others begin again in the same folder.
+    apart : files that hold times besides those that always do.
     """
-    rng = random.Random(seed)
-    with tempfile.TemporaryDirectory() as root:
-        whole = Path(root) / "whole"
-        seconds = run([*arguments, "--out", str(whole)])
-        done = wrong = folder = 0
-        while done < kills:
-            folder += 1
-            there = Path(root) / f"killed-{folder}"
-            going_on = [*arguments, "--out", str(there), "--resume"]
-            while killed(going_on, rng.uniform(0.1, 1.1) * seconds):
-                done += 1
-            wrong += len(differing(whole, there))
-    return done, wrong
+
+    name: str
+    arguments: tuple[str, ...]
+    kills: int
+    goes_on: bool = True
+    apart: tuple[str, ...] = ()
+
+    def survive(self, seed: int) -> tuple[int, int]:
+        """Kill it so many times, over as many folders as that takes.
+
+        Returns how often it was killed, and how many files differed from an undisturbed run's or
+        were left in the temporary folder.
+        """
+        from tests.femcheck.check.small import design_of, three_circles  # which loads femcheck
+
+        rng = random.Random(seed)
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name)
+            small, temporary = root / "small.json", root / "temporary"
+            design_of(three_circles()).save(small)
+            temporary.mkdir()
+            arguments = [part.format(small=small) for part in self.arguments]
+            seconds = run([*arguments, "--out", str(root / "whole")])
+            done = wrong = folder = 0
+            while done < self.kills:
+                folder += 1
+                there = root / f"killed-{folder}"
+                again = [*arguments, "--out", str(there), *(["--resume"] if self.goes_on else [])]
+                while killed(again, rng.uniform(0.1, 1.1) * seconds, temporary):
+                    done += 1
+                wrong += len(differing(root / "whole", there, self.apart))
+                wrong += len(list(temporary.glob("beamopt-*")))
+        return done, wrong
+
+
+SOLID = ("--layers", "2", "--size", "9")
+SILICONE = ("--law", "neo-hookean", "--nu", "0.4")
+STUDY = ("study", "--iterations", "1", "--set", "search.generations=4")
+FRONT = ("pareto", "random-section", "--objectives", "L,mass", "--population", "24")
+CHAINS = (
+    Chain("study", (*STUDY, "--workers", "2"), 6),
+    Chain("front", (*FRONT, "--generations", "30"), 8),
+    Chain("bound", ("bound", "hand-drawn-workspace"), 6, goes_on=False),
+    Chain("export", ("export", "{small}"), 8, goes_on=False),
+    Chain(
+        "chart of rods",
+        ("chart", "gravity"),
+        3,
+        goes_on=False,
+        apart=("chart.csv", "chart.svg", "chart.png"),  # a clock ends its methods
+    ),
+    Chain(
+        "map of rods",
+        ("stability", "--samples", "8", "--workers", "2"),
+        4,
+        apart=("reading.md", "stability.svg", "stability.png"),
+    ),
+    Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 8),
+    Chain("prediction", ("femcheck", "run", "{small}", "--law", "neo-hookean", *SOLID), 8),
+    Chain("accuracy", ("femcheck", "run", "{small}", *SILICONE, "--accuracy", "1mm"), 6),
+    Chain(
+        "chart",
+        ("femcheck", "chart", "{small}", "--family", "raster", "--family", "beam"),
+        6,
+        apart=("chart.svg", "chart.png", "reading.md", "cheapest.csv"),
+    ),
+    Chain("map", ("femcheck", "stability", "--axis", "tube"), 6),
+)
+"""Every command that writes a folder, but for a search."""
 
 
 def checks(full: bool) -> list[Check]:
-    kills, study_kills = (24, 6) if full else (3, 0)
     scene = ["optimize", "hand-drawn-section", "--seed", "7"]
     generations = "100" if full else "10"
     search = [*scene, "--set", f"search.generations={generations}"]
-    study = ["study", "--iterations", "1", "--set", "search.generations=4", "--workers", "2"]
 
-    def after_kills(name: str, arguments: list[str], count: int) -> Check:
+    def after_kills(chain: Chain) -> Check:
         def rows() -> Iterator[Row]:
-            done, wrong = survive(arguments, count, seed=2)
+            done, wrong = chain.survive(seed=2)
             source = "SIGKILL at random moments"
-            what = f"{name}: files that differ from an undisturbed run's, after {done} kills"
+            what = f"{chain.name}: files that differ from an undisturbed run's, after {done} kills"
             yield Row(what, source, 0, wrong, 0)
 
-        return Check(name, rows)
+        return Check(chain.name, rows)
 
     def same_for(name: str, arguments: list[str], workers: tuple[int, ...]) -> Check:
         def rows() -> Iterator[Row]:
@@ -114,12 +178,10 @@ def checks(full: bool) -> list[Check]:
         return Check(f"workers, {name}", rows)
 
     made: list[Callable[[], Check]] = [
-        lambda: after_kills("search", search, kills),
+        lambda: after_kills(Chain("search", tuple(search), 24 if full else 3)),
         lambda: same_for("search", search, (1, 2, 3) if full else (1, 2)),
     ]
     if full:
-        made += [
-            lambda: after_kills("study", study, study_kills),
-            lambda: same_for("study", study[:-2], (1, 2)),
-        ]
+        made += [partial(after_kills, chain) for chain in CHAINS]
+        made.append(lambda: same_for("study", list(STUDY), (1, 2)))
     return [make() for make in made]

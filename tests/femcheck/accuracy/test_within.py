@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.errors import InputError
+from beamopt.named import named_design
 from femcheck.accuracy import within
 from femcheck.accuracy.ending import Ending, Source, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
@@ -20,7 +21,6 @@ from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import MeshProblem
 from femcheck.models.beam import RodOnOutline
-from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions

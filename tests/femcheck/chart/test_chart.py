@@ -14,6 +14,7 @@ from beamopt.bundled import bundled_scenes
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.line_journal import with_digest
+from beamopt.named import named_design
 from beamopt.study.pool import in_process
 from femcheck.chart import lineup, run
 from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
@@ -27,7 +28,6 @@ from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended, NoReply
 from femcheck.continuation.outcome import Status
 from femcheck.material.fibre import Thread
-from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 from femcheck.prediction.options import PredictionOptions

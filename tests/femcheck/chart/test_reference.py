@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.arrays import FloatArray
+from beamopt.named import named_design
 from femcheck.chart.lineup import Series
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Limit, Reference, limits_of, reference_of
 from femcheck.models.beam import RodOnOutline
-from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from femcheck.models.reply import FOUND, Reply
 from femcheck.models.solid import SolidModel

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -13,14 +14,17 @@ import numpy as np
 import pytest
 
 from beamopt.errors import InputError
+from beamopt.folder import LOCK
 from beamopt.study.pool import processes
 from femcheck.check.checked import Checked
+from femcheck.check.folder import KIND
 from femcheck.check.kept import case_file, read_case, write_case
 from femcheck.check.run import check_design
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
 from tests.clocks import busy, run_away
 from tests.femcheck.check.small import here, kept_files, quick_options, small_options, small_subject
+from tests.kills import survives
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 Done = tuple[Checked, Path]
@@ -200,9 +204,27 @@ def test_killed_in_the_middle(quick: Done, tmp_path: Path) -> None:
     assert kept_files(folder) == kept_files(quick[1])
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
+def test_killed_before_any_change_of_a_file(
+    quick: Done, tmp_path: Path, undrawn: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the last cases on: meshes and tables, and what was half written of them."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def begin(folder: Path) -> None:
+        shutil.copytree(quick[1], folder)
+        for file in sorted((folder / "cases").iterdir())[-3:]:
+            file.unlink()
+
+    survives(again, tmp_path, kills=4, begin=begin)
+    assert kept_files(tmp_path / "whole") == kept_files(quick[1])
+    assert not list(tmp_path.glob("beamopt-*"))
+
+
 def test_killed_before_there_was_a_marker(tmp_path: Path) -> None:
     folder = tmp_path / "small"
     (folder / "cases").mkdir(parents=True)
+    (folder / LOCK).write_text(KIND.name)
     small_subject().design.save(folder / "design.json")
     checked = again(folder, seconds=1e-9)
     assert checked.comparison is not None

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beamopt.study import work
+from beamopt.study.work import solve_all
 from femcheck.check import run as check_run
 from femcheck.check import schedule as module
-from femcheck.check import work
 from femcheck.check.case import Case, CaseResult
 from femcheck.check.meshes import layers_for
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
-from femcheck.check.work import solve_all
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.pressure_tree import all_nodes

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-import femcheck.cli.run
+import femcheck.cli.subjects
 import femcheck.picture
 from femcheck.cli.application import run
 from femcheck.continuation.direct import Pardiso
@@ -23,7 +23,7 @@ CHEAP = ["--element", "tet4", "--layers", "2", "--size", "9", "--workers", "1"]
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
-    monkeypatch.setattr(femcheck.cli.run, "Subject", Coarse)
+    monkeypatch.setattr(femcheck.cli.subjects, "Subject", Coarse)
     design_of(three_circles()).save(tmp_path / "disc.json")
     stiff = {"shear_modulus": 150.0}
     design_of(three_circles(), actuator=stiff).save(tmp_path / "stiff.json")
@@ -61,14 +61,14 @@ def test_agrees_or_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_a_failure_is_said_and_the_batch_goes_on(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """No mesh for either: both are reported, each in its folder, exit code 1."""
+    """No mesh for either: both are reported, each in its folder, exit code 3."""
     other = folder / "found"
     other.mkdir()
     design_of(three_circles()[:2]).save(other / "best.json")
     crashing = folder / "crashing-gmsh"
     crashing.write_text("#!/bin/sh\nexit 3\n")
     crashing.chmod(0o755)
-    assert run(["run", "disc.json", "found", *CHEAP, "--gmsh", str(crashing)]) == 1
+    assert run(["run", "disc.json", "found", *CHEAP, "--gmsh", str(crashing)]) == 3
     said = capsys.readouterr().out
     assert said.count("no answer: gmsh crashed: exit code 3") == 2
     for name in ("disc", "found"):
@@ -84,7 +84,7 @@ def test_seal(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "--seal 1.0 seals a copy by a skin of 1 mm and says how far that moves" in said
     assert not (folder / "checks").exists()
     late = ["--seconds", "1e-9", "--out", "out"]
-    assert run(["run", "open.json", *CHEAP, *late, "--seal", "1.0"]) == 1
+    assert run(["run", "open.json", *CHEAP, *late, "--seal", "1.0"]) == 3
     printed = capsys.readouterr().out
     assert "sealing moved the beam's tips by" in printed
     moved = json.loads((folder / "out" / "summary.json").read_text())["sealing_moved_mm"]
@@ -96,7 +96,7 @@ def test_seal(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["missing.json"], ["missing.json", "no such file"]),
+        (["missing.json"], ["missing.json", "no such design"]),
         (["disc.json", "disc.json"], ["disc.json", "a second design called disc"]),
         (["disc.json", "--agree", "nonsense"], ["--agree", "nonsense", "5% or 0.05"]),
         (["disc.json", "--agree", "0"], ["--agree", "above 0"]),

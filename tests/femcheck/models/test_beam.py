@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from beamopt.design import Design
+from beamopt.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.beam import TIGHTEST, ArcOnGrid, RodByMethod, RodOnOutline, on_grid
-from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from tests.femcheck.check.small import design_of, three_circles
 

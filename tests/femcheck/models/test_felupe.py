@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beamopt.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status
@@ -13,7 +14,6 @@ from femcheck.material.law import Law
 from femcheck.material.rigid_section import RigidSection
 from femcheck.models import felupe
 from femcheck.models.felupe import FelupeEquilibrium, FelupeModel
-from femcheck.models.named import named_design
 from femcheck.models.question import LawChoice, Question
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from beamopt.named import named_design
 from beamopt.workspace import pressure_grid
 from femcheck.check.options import CheckOptions
 from femcheck.check.subject import LoadedDesignError
-from femcheck.models.named import named_design
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from beamopt.arrays import FloatArray
+from beamopt.named import named_design
 from femcheck.check.case import solve_case, stopped
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended
@@ -15,7 +16,6 @@ from femcheck.continuation.outcome import Outcome, Status
 from femcheck.mesh.gmsh_section import Mesher, MeshProblem
 from femcheck.models import points
 from femcheck.models.beam import RodOnOutline
-from femcheck.models.named import named_design
 from femcheck.models.question import LawChoice, Question
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
@@ -28,6 +29,7 @@ from femcheck.solid.winding import Wound
 from tests.clocks import busy, run_away
 from tests.femcheck.check.small import kept_files
 from tests.femcheck.prediction.small import predict, soft_subject
+from tests.kills import survives
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 Done = tuple[Prediction, Path]
@@ -110,6 +112,26 @@ def test_killed_in_the_middle(limited: Done, copied: Path) -> None:
     assert 0 < sum(file.exists() for file in lost) < len(lost)
     predict(copied, resume=True)
     assert kept_files(copied) == kept_files(limited[1])
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
+def test_killed_before_any_change_of_a_file(
+    calm: Done, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the last rays on: meshes and tables, and what was half written of them."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def begin(folder: Path) -> None:
+        shutil.copytree(calm[1], folder)
+        for file in sorted((folder / "cases").iterdir())[-3:]:
+            file.unlink()
+
+    def work(folder: Path) -> None:
+        predict(folder, soft_subject(levels=[0, 1, 2]), resume=True, agree=1.0)
+
+    survives(work, tmp_path, kills=4, begin=begin)
+    assert kept_files(tmp_path / "whole") == kept_files(calm[1])
+    assert not list(tmp_path.glob("beamopt-*"))
 
 
 class Dying(InProcess):

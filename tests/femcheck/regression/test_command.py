@@ -20,8 +20,8 @@ from femcheck.continuation.outcome import Status
 from femcheck.models.reply import Reply
 from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import LADDER
-from femcheck.regression.held_design import BUNDLED
-from femcheck.regression.run import regress
+from femcheck.regression.held_design import BUNDLED, find_design
+from femcheck.regression.run import hold_designs, regress, update_baseline
 from tests.femcheck.regression.small import saved
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -213,7 +213,8 @@ def test_the_committed_baseline_of_one_design_holds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(ROOT)
-    assert run(["regress", "two-segments", "gravity", *HERE]) == 0
+    committed = ["--baseline", "reports/baseline", "--meshes", "meshes"]
+    assert run(["regress", "two-segments", "gravity", *committed, *HERE]) == 0
     assert "of 2 designs" in capsys.readouterr().out
 
 
@@ -262,7 +263,7 @@ def test_a_lost_baseline_of_the_package_is_named(
     assert {f"{name}.json" for name in BUNDLED} < {f.name for f in (tmp_path / "kept").iterdir()}
     (tmp_path / "kept" / "gravity.json").unlink()
     (tmp_path / "kept" / "pre-curved.json").unlink()
-    there = ["regress", "--baseline", str(tmp_path / "kept"), *HERE]
+    there = ["regress", "--baseline", str(tmp_path / "kept"), "--meshes", "meshes", *HERE]
     assert "kept: no baseline of gravity, pre-curved: " in complaint(there, capsys)
     assert run([*there, "two-segments"]) == 0
 
@@ -280,10 +281,83 @@ def test_a_time_limit_is_no_move(
 
     monkeypatch.setattr(femcheck.regression.rods.RodOnOutline, "reply", late)
     capsys.readouterr()
-    assert run([*HOLD, "--out", "moved.csv"]) == 1
+    assert run([*HOLD, "--out", "moved.csv"]) == 3
     out = capsys.readouterr().out
     assert "rows: 0 moved" in out
     assert "1 not compared, time limit reached" in out
     assert "  beam of small: tips at 0, 20, 0 kPa" in out
     assert "lowest rung that moved" not in out
     assert "time limit reached" in Path("moved.csv").read_text()
+
+
+def test_a_table_of_what_moved_is_written_anew_and_no_other_file(
+    kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for _ in range(2):
+        assert run([*HOLD, "--out", "moved.csv"]) == 0
+    table = Path("moved.csv").read_text()
+    Path("mine.csv").write_text("my,own\n1,2\n")
+    assert "mine.csv" in complaint([*HOLD, "--out", "mine.csv"], capsys)
+    assert Path("mine.csv").read_text() == "my,own\n1,2\n"
+    assert run([*HOLD, "--out", "mine.csv", "--force"]) == 0
+    assert Path("mine.csv").read_text() == table
+
+
+def test_defaults_are_in_the_project(folder: Path) -> None:
+    assert run(["baseline", "small.json", *HERE]) == 0
+    assert {path.name for path in folder.iterdir()} == {"small.json", "baselines"}
+    assert {path.name for path in (folder / "baselines").iterdir()} == {
+        "small.json",
+        "provenance.json",
+    }
+    assert run(["regress", *HERE]) == 0
+
+
+def test_another_s_files_are_left_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A run folder as `--out`, a design in the place of a baseline."""
+    run_folder = folder / "run"
+    run_folder.mkdir()
+    for name in ("best.json", "provenance.json", "small.json"):
+        (run_folder / name).write_text('{"mine": 1}')
+    for force in ([], ["--force"]):
+        complaint(["baseline", "small.json", "--out", "run", *HERE, *force], capsys)
+    assert {path.read_text() for path in run_folder.iterdir()} == {'{"mine": 1}'}
+    assert run(WRITE) == 0
+    saved(folder / "kept", "other")
+    saved(folder, "other")
+    before = (folder / "kept" / "other.json").read_bytes()
+    line = complaint(["baseline", "other.json", "--out", "kept", *HERE], capsys)
+    assert "kept/other.json" in line
+    assert "--force" in line
+    assert (folder / "kept" / "other.json").read_bytes() == before
+
+
+def test_an_update_in_a_test_does_not_write_over_a_design(folder: Path) -> None:
+    (folder / "tests").mkdir()
+    other = saved(folder / "tests", "other")
+    before = other.read_bytes()
+    design = find_design(str(saved(folder, "other")), folder / "tests")
+    with pytest.raises(InputError):
+        update_baseline(design, folder / "tests")
+    assert other.read_bytes() == before
+    assert {path.name for path in (folder / "tests").iterdir()} == {"other.json"}
+
+
+@pytest.mark.parametrize("text", ["my mesh", "$MeshFormat\n2.2 0 8\n"])
+def test_another_s_mesh_is_left_alone(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    """One in the place of a section mesh, as of a program that shares the folder."""
+    design = find_design(str(saved(folder, sealed=True)), folder)
+    design.mesh.write_text(text)
+    monkeypatch.setattr("femcheck.regression.run.make_section", lambda design: None)
+    monkeypatch.setattr("femcheck.regression.run.measure_all", lambda *_, **__: None)
+    assert design.has_solid
+    for update in (
+        lambda: hold_designs([str(folder / "small.json")], folder / "kept", folder),
+        lambda: update_baseline(design, folder / "kept"),
+    ):
+        with pytest.raises(InputError) as caught:
+            update()
+        assert caught.value.where == str(design.mesh)
+        assert design.mesh.read_text() == text

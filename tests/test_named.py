@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
+from beamopt import named
 from beamopt.bundled import bundled_scenes
 from beamopt.errors import InputError
+from beamopt.named import design_of_scene, named_design
 from beamopt.scene import load_scene
-from femcheck.models import named
-from femcheck.models.named import design_of_scene, named_design
 from tests.femcheck.check.small import design_of, three_circles
 
 
@@ -50,8 +50,20 @@ def test_notes_that_are_no_names(tmp_path: Path) -> None:
 def test_what_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such design; a design file, a run folder, a scene"):
         named_design("no-such-thing")
-    with pytest.raises(InputError, match="no such design"):
+    with pytest.raises(InputError, match=r"it has no best\.json"):
         named_design(str(tmp_path))
+
+
+def test_a_run_folder_comes_before_a_bundled_scene(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As after `beamopt optimize spiral --out spiral`; another folder of that name is none."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "spiral").mkdir()
+    assert named_design("spiral")[1].pressures == load_scene("spiral").pressures.levels
+    design = design_of(three_circles())
+    design.save(tmp_path / "spiral" / "best.json")
+    assert named_design("spiral")[1].json() == design.json()
 
 
 def test_a_scene_whose_sections_are_all_soft(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,23 +13,35 @@ from beamopt.errors import InputError
 from beamopt.folder import design_file
 from beamopt.scene import Scene, load_scene
 
-__all__ = ["design_of_scene", "name_of", "named_design"]
+__all__ = ["design_of_scene", "is_scene", "name_of", "named_design"]
 
 MOST_SECTIONS = 100  # that are drawn until one is stiff
 
 
-def named_design(source: str) -> tuple[str, Design]:
-    """Name and design of a design file, a run folder, or a scene.
+def is_scene(source: str) -> bool:
+    """True for a scene file, and for a bundled scene's name.
+
+    A design file or a run folder of that name in the current folder comes before the scene.
+    """
+    if Path(source).suffix == ".toml":
+        return True
+    return source in bundled_scenes() and not design_file(Path(source)).exists()
+
+
+def named_design(source: str | Path) -> tuple[str, Design]:
+    """Name and design of a design file, a run folder, or a scene; see `is_scene`.
 
     Raises
     ------
     InputError : there is none, or it can not be read.
     """
     path = Path(source)
-    if source in bundled_scenes() or path.suffix == ".toml":
+    if is_scene(str(source)):
         scene = load_scene(source)
         return scene.name, design_of_scene(scene)
     file = design_file(path)
+    if path.is_dir() and not file.exists():
+        raise InputError(source, "", None, f"no run folder: it has no {file.name}")
     if not file.exists():
         scenes = ", ".join(bundled_scenes())
         said = f"no such design; a design file, a run folder, a scene, or one of: {scenes}"

@@ -1,0 +1,96 @@
+"""Every kind of file that is read, damaged in every way: one line and exit code 2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.hostile.cases import Case, Server, check
+from tests.hostile.damages import CONTENTS, NUMBERS, PLACES, copied
+
+ALL = {**CONTENTS, **NUMBERS, **PLACES}
+FEW = ("empty", "utf-16", "first nan", "folder", "pipe", "huge")
+
+TIPS = ["--pressures", "1,2,3"]
+RESUMED = ["--out", "run", "--resume", *(f"--set={key}" for key in ("search.generations=1",))]
+
+# command, files, the damaged one of them
+READ: dict[str, tuple[str, str, tuple[str, ...], str, tuple[str, ...]]] = {}
+
+
+def reads(line: str, damaged: str, *files: str, damages: tuple[str, ...] = tuple(ALL)) -> None:
+    program, _, rest = line.partition(" ")
+    READ[f"{line} ({damaged})"] = (program, rest, files, damaged, damages)
+
+
+reads("beamopt rung section.toml", "section.toml", "section.toml", "drawn.json")
+reads("beamopt rung segments.toml", "drawn.json", "segments.toml", "drawn.json")
+reads("beamopt tips drawn.json", "drawn.json", "drawn.json")
+reads("beamopt optimize section.toml --out out", "drawn.json", "section.toml", "drawn.json")
+reads("beamopt optimize workspace.toml --out out", "table.csv", "workspace.toml", "table.csv")
+reads("beamopt optimize points.toml --out out", "points.csv", "points.toml", "points.csv")
+reads("beamopt bound table.csv", "table.csv", "table.csv")
+reads("beamopt reach drawn.json path.csv", "path.csv", "drawn.json", "path.csv")
+OPTIMIZE = (
+    "beamopt optimize random-section --out run --resume --set search.generations=1 "
+    "--set search.population=4 --set section.feature_points=6"
+)
+reads(OPTIMIZE, "run/journal.jsonl", "run")
+reads(OPTIMIZE, "run/scene.toml", "run")
+reads("beamopt tips run", "run/best.json", "run")
+reads("beamopt show run", "run/target.csv", "run")
+reads("beamopt show run", "run/scene.toml", "run")
+FRONT = OPTIMIZE.replace("optimize", "pareto").replace("--out run", "--out front")
+reads(f"{FRONT} --objectives L,ratio --population 4", "front/journal.jsonl", "front")
+reads(
+    "beamopt study --out study --resume --iterations 1 --no-refine --target random-section "
+    "--set search.generations=1",
+    "study/study.json",
+    "study",
+)
+reads("beamopt stability --out map --samples 1 --workers 1 --resume", "map/journal.jsonl", "map")
+reads("femcheck run sealed.json --out out", "sealed.json", "sealed.json")
+reads("femcheck run sealed.json --out check --resume", "check/check.json", "sealed.json", "check")
+reads("femcheck run sealed.json --out check --resume", "check/design.json", "sealed.json", "check")
+reads("femcheck chart disc.json --out chart --resume", "chart/journal.jsonl", "disc.json", "chart")
+reads("femcheck stability --redraw --out solids", "solids/journal.jsonl", "solids")
+REGRESS = "femcheck regress gravity --baseline baseline --meshes meshes"
+reads(REGRESS, "baseline/gravity.json", "baseline", "meshes")
+for table in ("summary.json", "check.json", "design.json", "compare.csv", "table.csv"):
+    reads("femcheck report check --out out.html", f"check/{table}", "check", damages=FEW)
+for table in ("timing.csv", "provenance.json"):
+    reads("femcheck report check --out out.html", f"check/{table}", "check", damages=FEW)
+reads("femcheck report prediction --out out.html", "prediction/paths.svg", "prediction")
+reads("femcheck report prediction --out out.html", "prediction/summary.json", "prediction")
+reads("femcheck report prediction --out out.html", "prediction/limits.csv", "prediction")
+reads("femcheck report figures --out out.html", "figures/chart.svg", "figures")
+reads("femcheck report figures --out out.html", "figures/chart.csv", "figures")
+reads("femcheck report figures --out out.html", "figures/reading.md", "figures", damages=FEW)
+reads("femcheck report figures --out out.html", "figures/provenance.json", "figures")
+reads("femcheck report run --out out.html", "run/summary.json", "run")
+reads("femcheck report run --out out.html", "run/history.csv", "run")
+for command in ("show", "export", "rung", "refine"):
+    reads(f"beamopt {command} drawn.json", "drawn.json", "drawn.json", damages=FEW)
+for command in ("optimize", "pareto --objectives L,ratio", "chart", "bound"):
+    reads(f"beamopt {command} section.toml", "section.toml", "section.toml", damages=FEW)
+for command in ("chart", "run --accuracy 1mm"):
+    reads(f"femcheck {command} sealed.json", "sealed.json", "sealed.json", damages=FEW)
+
+CASES = [(name, damage) for name, (*_, damages) in READ.items() for damage in damages]
+
+
+@pytest.mark.parametrize(("name", "damage"), CASES, ids=[f"{b}: {a}" for a, b in CASES])
+def test_a_damaged_file(
+    name: str, damage: str, assets: Path, server: Server, tmp_path: Path
+) -> None:
+    program, line, files, damaged, _ = READ[name]
+
+    def make(folder: Path) -> None:
+        copied(assets, *files)(folder)
+        try:
+            ALL[damage](folder / damaged)
+        except (IndexError, UnicodeDecodeError):
+            pytest.skip("no such thing in it")
+
+    check(Case([[program, *line.split()]], make, (0, 1, 2, 3)), server, tmp_path)

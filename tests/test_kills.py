@@ -1,0 +1,205 @@
+"""Killed before any change of a file, every command goes on and ends in the same bytes.
+
+Full chains, of whole commands and solids, are in the validation suite `resume`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamopt.chart.stability
+import femcheck.stability.work
+from beamopt.bound.certificate import Certificate, certificate
+from beamopt.bound_folder import claimed_for_bound, write_bound
+from beamopt.chart.comparators.shooting import Shooting
+from beamopt.chart.measure import Limits
+from beamopt.chart.run import run_chart
+from beamopt.chart.sampling import Sample, solve_sample
+from beamopt.chart.stability import run_stability
+from beamopt.design import load_design
+from beamopt.export.run import ExportOptions, export_design
+from beamopt.files import write_atomic
+from beamopt.folder import claimed
+from beamopt.optimisation import optimize
+from beamopt.pareto.run import find_front
+from beamopt.refinement import Refinement, refine_design
+from beamopt.refinement_folder import KIND as REFINEMENT
+from beamopt.refinement_folder import write_refined_design
+from beamopt.scene import load_scene
+from beamopt.study.plan import Plan
+from beamopt.study.pool import in_process
+from beamopt.study.run import run_study
+from femcheck.accuracy.run import run_accuracy
+from femcheck.chart.run import run_chart as run_chart_of_models
+from femcheck.regression.run import hold_designs
+from tests.femcheck.made_up import NEO, MadeUp, powers, question_of
+from tests.femcheck.regression.small import saved
+from tests.femcheck.stability.small import make, told_cell, told_row
+from tests.kills import MOMENT, survives
+from tests.test_foreign_files import SEALED
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
+
+
+@pytest.fixture(autouse=True)
+def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A place for temporary folders, none of which is left in the end."""
+    place = tmp_path / "temporary"
+    place.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(place))
+    return place
+
+
+def moment(*_: object) -> None:
+    """Name a moment at which nothing is written."""
+    sys.audit(MOMENT)
+
+
+def search(folder: Path) -> None:
+    keys = ["search.generations=4", "refine.finish=true", "refine.rounds=1"]
+    scene = load_scene("hand-drawn-section", keys)
+    optimize(scene, folder, resume=True, figures=False, callback=moment, refining=moment)
+
+
+def study(folder: Path) -> None:
+    plan = Plan(1, 0, ("search.generations=1",), ("hand-drawn-section",), refine=False)
+    run_study(folder, plan, resume=True, figures=False)
+
+
+def front(folder: Path, generations: int = 2) -> None:
+    scene = load_scene("hand-drawn-workspace", [f"search.generations={generations}"])
+    find_front(scene, ("L", "mass"), folder, population=8, resume=True, figures=False)
+
+
+def front_that_grows(folder: Path) -> None:
+    """Designs that a front had before and has not now are deleted, whenever it was killed."""
+    for generations in (0, 2):
+        try:
+            front(folder, generations)
+        except ValueError:  # it has more already
+            assert generations == 0
+
+
+@cache
+def bounded() -> Certificate:
+    scene = load_scene("hand-drawn-workspace")
+    return certificate(scene, scene.load_target())
+
+
+def bound(folder: Path) -> None:
+    scene = load_scene("hand-drawn-workspace")
+    with claimed_for_bound(folder, scene):
+        write_bound(folder, scene, scene.load_target(), bounded())
+
+
+def refinement(folder: Path) -> None:
+    scene = load_scene("hand-drawn-section")
+    with claimed(folder, REFINEMENT, resume=False):
+        write_refined_design(folder, scene, scene.load_target(), refined())
+
+
+@cache
+def refined() -> Refinement:
+    scene = load_scene("hand-drawn-section", ["refine.rounds=1"])
+    design = scene.design_of(scene.random_points(np.random.default_rng(0)))
+    return refine_design(design, scene, scene.load_target())
+
+
+def chart_of_rods(folder: Path) -> None:
+    few = (Shooting(resolutions=(8,)),)
+    once = Limits(repeats=1, spent=0.0)
+    run_chart(load_scene("gravity"), folder, methods=few, limits=once, callback=moment)
+
+
+@cache
+def sample(seed: int, index: int, methods: tuple[str, ...]) -> Sample:
+    return solve_sample(seed, index, methods)
+
+
+def map_of_rods(folder: Path) -> None:
+    run_stability(folder, 3, methods=("modes",), resume=True, figures=False)
+
+
+def export(folder: Path) -> None:
+    design = load_design(SEALED)
+    export_design(design, "sealed", folder, ExportOptions(("svg", "stl")))
+
+
+def accuracy(folder: Path) -> None:
+    with MadeUp(powers(10.0, 2)).instead():
+        run_accuracy(question_of(NEO), 0.5, folder, resume=True)
+
+
+def chart(folder: Path) -> None:
+    with MadeUp(powers(5.0, 4)).instead():
+        families = ("wedge18", "hex27")
+        question = question_of(NEO)
+        run_chart_of_models(question, folder, families=families, pool=in_process, resume=True)
+
+
+def baselines(folder: Path) -> None:
+    designs = [str(saved(folder.parent, name)) for name in ("a", "b")]
+    hold_designs(designs, folder, folder, force=True)
+
+
+WORK: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
+    "search": (search, ()),
+    "study": (study, ()),
+    "front": (front, ()),
+    "front that grows": (front_that_grows, ()),
+    "bound": (bound, ()),
+    "refinement": (refinement, ()),
+    "chart of rods": (chart_of_rods, ()),
+    "map of rods": (map_of_rods, ("reading.md",)),
+    "export": (export, ()),
+    "accuracy": (accuracy, ()),
+    "chart": (chart, ("reading.md", "cheapest.csv")),
+    "map": (partial(make, resume=True), ()),
+    "baselines": (baselines, ()),
+}
+"""What makes a folder or goes on with it, and files that hold times."""
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Solids, samples and figures that take no time."""
+
+    def touch(figure: object, *paths: Path) -> None:
+        for path in paths:
+            write_atomic(path, "a figure")
+
+    monkeypatch.setattr("beamopt.plot.style.save_figure", touch)
+    for module in ("beamopt.chart.run", "femcheck.chart.run"):
+        monkeypatch.setattr(f"{module}.save_figure", touch)
+    monkeypatch.setattr("femcheck.chart.run.chart_figure", lambda chart: None)
+    monkeypatch.setattr("femcheck.chart.lineup.GRIDS", ((16, 60),))
+    monkeypatch.setattr("femcheck.chart.lineup.RODS", {"modes": (4,)})
+    monkeypatch.setattr("femcheck.chart.measure.SPENT", 0.0)
+    monkeypatch.setattr(femcheck.stability.work, "solve_cell", told_cell)
+    monkeypatch.setattr(femcheck.stability.work, "trace_row", told_row)
+    monkeypatch.setattr(
+        beamopt.chart.stability,
+        "solve_sample",
+        lambda seed, index, methods: sample(seed, index, tuple(methods)),
+    )
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_killed_it_ends_in_the_same_bytes(name: str, tmp_path: Path, temporary: Path) -> None:
+    work, apart = WORK[name]
+    prepare = {"bound": bounded, "refinement": refined}.get(name)
+    if prepare is not None:
+        prepare()
+    if name == "map of rods":
+        for index in range(3):
+            sample(0, index, ("modes",))
+    survives(work, tmp_path, kills=3, apart=apart)
+    assert list(temporary.iterdir()) == []
