@@ -132,7 +132,7 @@ class LineJournal:
         for number, entry in enumerate(self.entries, 2):
             try:
                 found.append(convert(entry))
-            except (ValueError, KeyError, TypeError, AttributeError):
+            except (ValueError, KeyError, TypeError, AttributeError, OverflowError):
                 raise self.damaged(number) from None
         return found
 
