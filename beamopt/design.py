@@ -34,15 +34,7 @@ from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant, section_saint_venant
 from beamopt.workspace import Workspace, pressure_grid
 
-__all__ = [
-    "Design",
-    "Grid",
-    "Levels",
-    "WallElements",
-    "load_design",
-    "read_design",
-    "section_values",
-]
+__all__ = ["Design", "Grid", "Levels", "WallElements", "load_design", "section_values"]
 
 SCHEMA = "beamopt-design/1"
 

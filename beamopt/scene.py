@@ -43,7 +43,6 @@ __all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
-MOST_POINTS, MOST_ELEMENTS = 20_000_000, 2_000_000_000  # of all sections judged at once
 SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how many; their stream
 
 
@@ -129,27 +128,8 @@ class Scene(Model):
     def _leaves_room(self) -> Scene:
         self.seal.check_fits(self.grid.build())
         self.making.check_fits(self.grid.build())
-        batch = round(max(1.0, self.search.crossover_probability) * self.search.population)
-        self.check_memory("search.population", self.search.population, batch)
+        self.search.check_memory(self.section.feature_points, self.grid.radial * self.grid.angular)
         return self
-
-    def check_memory(self, key: str, population: int, batch: int) -> None:
-        """Refuse a batch of sections that takes gigabytes.
-
-        key, population : what asks for it. batch : sections judged at once.
-
-        Raises
-        ------
-        InputError : the key, its value and what it may be.
-        """
-        points, elements = self.section.feature_points, self.grid.radial * self.grid.angular
-        for each, most, what in (
-            (points, MOST_POINTS, "section.feature_points"),
-            (elements, MOST_ELEMENTS, "grid.radial × grid.angular"),
-        ):
-            if batch * each > most:
-                said = f"sections of a generation × {what} ({each:,}): at most {most:,}"
-                raise InputError("", key, population, said)
 
     def __repr__(self) -> str:
         search, ring = self.search, self.grid

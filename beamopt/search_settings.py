@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from beamopt.generation_size import check_generation
 from beamopt.model import Count, Model, Number, quantity
 
 __all__ = ["Refining", "Search", "Stop"]
@@ -34,6 +35,11 @@ class Search(Model):
     recombination: Literal["fixed", "range"] = quantity("fixed", "crossover method")
     mutation: Literal["direct", "weighted"] = quantity("direct", "mutation method")
     seed: Count = quantity(0, "seed of everything random in the search", low=0)
+
+    def check_memory(self, points: int, elements: int) -> None:
+        """Refuse a generation that takes gigabytes; see `check_generation`."""
+        batch = round(max(1.0, self.crossover_probability) * self.population)
+        check_generation("search.population", self.population, batch, points, elements)
 
 
 class Stop(Model):

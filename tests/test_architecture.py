@@ -53,6 +53,7 @@ FLOORS = [
         "beamopt.trajectory",
         "beamopt.target_choice",
         "beamopt.search_settings",
+        "beamopt.generation_size",
         "beamopt.judge",
     ],
     ["beamopt.design_keys", "beamopt.design", "beamopt.segment_files", "beamopt.overrides"],

@@ -11,7 +11,7 @@ import shapely
 
 import beamopt
 from beamopt.errors import InputError
-from beamopt.outline.drawn import drawn_regions
+from beamopt.outline import drawn
 from beamopt.outline.ring import fine_sagitta
 from beamopt.pairs import read_pairs
 from beamopt.pareto.run import find_front
@@ -66,18 +66,39 @@ def test_trajectories_of_very_many_samples_are_refused_together(tmp_path: Path) 
     assert caught.value.key == "target.paths"
 
 
-def test_many_chambers_take_little_more_than_few() -> None:
-    grid = beamopt.load_scene("random-section").grid.build()
+def pieces(count: int, share: float, seed: int | None = None) -> list[RingPiece]:
+    """As many ring pieces around, each of a share of its room or, with a seed, anywhere."""
+    starts = np.linspace(0, 360, count, endpoint=False)
+    if seed is not None:
+        starts = np.random.default_rng(seed).uniform(0, 360, count)
+    wide = share * 360 / count
+    return [
+        RingPiece(1 + k % 3, (12.0, 20.0), (start, start + wide))
+        for k, start in enumerate(starts.tolist())
+    ]
+
+
+def test_many_chambers_are_compared_with_their_neighbours_only() -> None:
+    sagitta = fine_sagitta(beamopt.load_scene("random-section").grid.build())
 
     def seconds(count: int) -> float:
-        angles = np.linspace(0, 360, count, endpoint=False).tolist()
-        shapes = [
-            RingPiece(1 + k % 3, (12.0, 20.0), (a, a + 180 / count)) for k, a in enumerate(angles)
-        ]
+        polygons = drawn._drawn_polygons(pieces(count, 0.5), sagitta)
         started = time.process_time()
-        regions = drawn_regions(shapes, fine_sagitta(grid))
-        assert sum(len(shapely.get_parts(one)) for one in regions) == count
+        assert len(drawn._visible(polygons, sagitta)) == count
         return time.process_time() - started
 
-    few, many = seconds(100), seconds(400)
-    assert many < 12 * few  # 16 where it is quadratic
+    few, many = (min(seconds(count) for _ in range(3)) for count in (150, 1200))
+    assert many < 60 * few  # 144 where each is compared with a union of all later ones
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_hidden_chambers_are_those_that_all_later_ones_cover(seed: int) -> None:
+    sagitta = fine_sagitta(beamopt.load_scene("random-section").grid.build())
+    polygons = drawn._drawn_polygons(pieces(40, 4.0, seed), sagitta)
+    visible = [
+        number
+        for number, polygon in enumerate(polygons)
+        if not drawn._without(polygon, shapely.union_all(polygons[number + 1 :]), sagitta).is_empty
+    ]
+    assert 10 < len(visible) < 40
+    assert drawn._visible(polygons, sagitta) == visible

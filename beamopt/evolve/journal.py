@@ -101,6 +101,7 @@ class Journal:
                     "cut the file off before the line to judge what follows again",
                 )
             yield verdicts
+        del self._lines[1:-1]  # those of a long search would fill the memory
 
     @property
     def last_generation(self) -> int:

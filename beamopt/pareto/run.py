@@ -15,6 +15,7 @@ from beamopt.errors import InputError
 from beamopt.evolve.stopping import StopReason
 from beamopt.evolve.variation import Variation
 from beamopt.folder import claimed
+from beamopt.generation_size import check_generation
 from beamopt.judge import in_parts
 from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
@@ -71,7 +72,8 @@ def find_front(
     >>> beamopt.find_front(scene, ["L", "mass"], population=8).evaluations
     8
     """
-    scene.check_memory("population", population, population)
+    points, elements = scene.section.feature_points, scene.grid.radial * scene.grid.angular
+    check_generation("population", population, population, points, elements)
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()
     judge = scene.judge(target)

@@ -13,7 +13,8 @@ from functools import partial
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.design import Design, DrawnChamber
+from beamopt.chambers import DrawnChamber
+from beamopt.design import Design
 from femcheck.check.case import Solid, rest_slopes, workshop
 from femcheck.check.subject import Subject, slender_copy
 from femcheck.continuation.outcome import Status
