@@ -100,6 +100,28 @@ def test_a_design_of_a_front_says_what_its_rules_added(tmp_path: Path) -> None:
     assert "R" not in load_design(tmp_path / "free" / "front-000.json").notes
 
 
+def test_only_designs_that_its_table_names_are_deleted(tmp_path: Path) -> None:
+    """A person's copies beside them stay, whatever their number."""
+
+    def front(generations: int) -> set[str]:
+        scene = load_scene(WANTED, [f"search.generations={generations}"])
+        find_front(scene, ("L", "mass"), tmp_path, population=16, resume=True, figures=False)
+        return {file.name for file in tmp_path.glob("front-*.json")}
+
+    before = front(0)
+    mine = {"front-mine.json", "front-900.json", "front-1.json"}
+    for name in mine:
+        (tmp_path / name).write_text("mine")
+    with (tmp_path / "front.csv").open("a") as table:  # named twice, or where no name stands
+        table.write("../front-900.json.bak\n")
+    after = front(4)
+    assert mine < after
+    assert before - after  # the front has other designs now
+    assert {(tmp_path / name).read_text() for name in mine} == {"mine"}
+    named = (tmp_path / "front.csv").read_text()
+    assert all(name in named for name in after - mine)
+
+
 def test_two_processes_can_not_write_one_front(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -23,7 +23,8 @@ from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
 from femcheck.chart.measure import Measured, is_final, key_of, made_with, measure, read, written
 from femcheck.chart.reference import Limit, Reference
-from femcheck.chart.run import CHART, Budget, run_chart
+from femcheck.chart.run import Budget, run_chart
+from femcheck.chart.table import HEADER
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended, NoReply
 from femcheck.continuation.outcome import Status
@@ -202,7 +203,7 @@ def test_what_a_chart_leaves(tmp_path: Path) -> None:
     chart = charted(question_of(NEO), tmp_path / "c", made())
     assert {path.name for path in (tmp_path / "c").iterdir()} == FILES
     text = (tmp_path / "c" / "chart.csv").read_text()
-    assert text.splitlines()[0] == CHART
+    assert text.splitlines()[0] == HEADER
     rows = list(csv.DictReader(text.splitlines()))
     assert [row["family"] for row in rows] == ["wedge18"] * 6 + ["hex27"] * 3
     assert {(row["found"], row["of"], row["ended"]) for row in rows} == {("3", "3", FOUND.key)}
