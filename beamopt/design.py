@@ -40,6 +40,7 @@ __all__ = [
     "Levels",
     "WallElements",
     "load_design",
+    "read_design",
     "section_values",
 ]
 
@@ -264,17 +265,26 @@ def load_design(path: str | Path) -> Design:
     >>> beamopt.load_design(str(file)).seal.skin
     1.0
     """
+    from beamopt.segment_files import with_sections
+
     file = Path(path)
+    design = read_design(file)
+    rules = with_sections(design.rod, file.parent)
+    return design if rules == design.rod else design.model_copy(update={"rod": rules})
+
+
+def read_design(file: Path) -> Design:
+    """Read a design file as it stands: its segments name their files still.
+
+    Raises
+    ------
+    InputError : the file, the key and what is allowed there.
+    """
     data = read_json(file)
     schema = data.get("schema")
     if schema != SCHEMA:
         raise InputError(file, "schema", schema, f"this version reads {SCHEMA}")
-    from beamopt.segment_files import with_sections
-
     design = parse(Design, data, file)
-    rules = with_sections(design.rod, file.parent)
-    if rules != design.rod:
-        design = design.model_copy(update={"rod": rules})
     if not design.moments.is_stiff:
         raise InputError(file, "", None, "the section has no material, or too little to bend")
     return design

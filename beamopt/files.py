@@ -18,6 +18,7 @@ __all__ = [
     "check_replaceable",
     "csv_text",
     "json_text",
+    "naming",
     "refuse_link",
     "replacing",
     "write_atomic",
@@ -38,9 +39,14 @@ def write_atomic(path: Path, content: str | bytes) -> None:
     InputError : the name is a link.
     OSError : the folder is missing or can not be written.
     """
-    data = content.encode() if isinstance(content, str) else content
+    data = _bytes(content)
     with replacing(path) as temporary, temporary.open("xb") as stream:
         stream.write(data)
+
+
+def _bytes(content: str | bytes) -> bytes:
+    """UTF-8; what a name of any bytes holds that is none is written as an escape."""
+    return content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
 
 
 @contextmanager
@@ -56,14 +62,25 @@ def replacing(path: Path) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(path.parent))
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    temporary.unlink(missing_ok=True)  # of an earlier process with this number
+    with naming(path):
+        temporary.unlink(missing_ok=True)  # of an earlier process with this number
+        try:
+            yield temporary
+            with temporary.open("rb+") as stream:
+                os.fsync(stream.fileno())
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Let an error of the file system name the file, which one of a full disk does not."""
     try:
-        yield temporary
-        with temporary.open("rb+") as stream:
-            os.fsync(stream.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+        yield
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None
+        raise
 
 
 def refuse_link(path: Path) -> None:
@@ -115,7 +132,7 @@ def write_changed(path: Path, content: str | bytes) -> bool:
     InputError : the name is a link.
     OSError : the folder is missing or can not be written.
     """
-    data = content.encode() if isinstance(content, str) else content
+    data = _bytes(content)
     refuse_link(path)
     if path.is_file() and path.read_bytes() == data:
         return False

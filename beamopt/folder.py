@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Collection, Iterator
@@ -32,6 +33,9 @@ LOCK = ".beamopt.lock"
 HEAD = 80  # bytes of a marker, which are enough to tell it
 
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
+"""Errors that another folder on the same disk would not mend."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +93,8 @@ def claimed(
             said = "another process is writing to this folder"
             raise InputError(path, "", None, said) from None
         except OSError as error:
+            if error.errno in FULL:
+                raise
             said = f"{(error.strerror or 'can not be made').lower()}; name a folder to write to"
             raise InputError(path, "", None, said) from None
         clear_scratch()
@@ -125,6 +131,7 @@ def _check(path: Path, kind: FolderKind, resume: bool) -> None:
     names = _names(path)
     for name in (*names, LOCK):
         refuse_link(path / name)
+        _refuse_special(path / name)
     if not names:
         return
     is_done, is_cut = kind.is_of(path), _was_cut(path, kind)
@@ -136,6 +143,12 @@ def _check(path: Path, kind: FolderKind, resume: bool) -> None:
         raise InputError(path, "", None, "holds files already; --resume goes on with what is there")
     if not kind.goes_on and is_done:
         raise InputError(path, "", None, "holds files already: name another folder")
+
+
+def _refuse_special(path: Path) -> None:
+    """Refuse pipes and devices, which opening could wait for, or act on."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise InputError(path, "", None, "must be a regular file or a folder")
 
 
 def _names(path: Path) -> list[str]:

@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from beamopt.errors import InputError
-from beamopt.files import refuse_link, write_atomic
+from beamopt.files import naming, refuse_link, write_atomic
 from beamopt.folder import differences
+from beamopt.input_file import check_regular
 
 __all__ = ["LineJournal", "with_digest", "without_digest"]
 
@@ -71,6 +72,8 @@ class LineJournal:
         self.digests = True
         if asked is not None:
             refuse_link(path)
+        if path.exists():
+            check_regular(path, None)
         content = path.read_bytes() if path.exists() else b""
         lines = content.splitlines(keepends=True)
         whole = [line for line in lines if line.endswith(b"\n")]
@@ -129,7 +132,7 @@ class LineJournal:
         for number, entry in enumerate(self.entries, 2):
             try:
                 found.append(convert(entry))
-            except (ValueError, KeyError, TypeError, AttributeError):
+            except (ValueError, KeyError, TypeError, AttributeError, OverflowError):
                 raise self.damaged(number) from None
         return found
 
@@ -138,5 +141,5 @@ class LineJournal:
         if keep:
             self.entries.append(entry)
         text = json.dumps(entry)
-        with self.path.open("a", encoding="utf-8") as stream:
+        with naming(self.path), self.path.open("a", encoding="utf-8") as stream:
             stream.write((with_digest(text) if self.digests else text) + "\n")

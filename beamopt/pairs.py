@@ -19,6 +19,7 @@ __all__ = ["aim_csv", "direction_weight_of", "read_pairs"]
 DIRECTION = ("tx", "ty", "tz")
 OPTIONAL = {"weight": "", "tx": "", "ty": "", "tz": "", "direction_weight": "mm²"}
 HIGHEST = 2000.0  # kPa, as of a scene's levels
+MOST_ROWS = 20_000  # each is judged for every section
 STRAIGHT = 1e-6  # of the length
 
 
@@ -60,6 +61,8 @@ def read_pairs(
     table = read_table(path, COLUMNS, OPTIONAL)
     if not len(table):
         raise InputError(path, "no rows", None, "one pair of pressures and tip, or more")
+    if len(table) > MOST_ROWS:
+        raise InputError(path, "rows", len(table), f"at most {MOST_ROWS} (take every n-th)")
     pressures = table.stacked(["p1", "p2", "p3"])
     for k, j in np.argwhere((pressures < 0) | (pressures > HIGHEST)).tolist():
         raise table.fault(k, f"p{j + 1}", f"0 … {HIGHEST:g} kPa (are they kPa?)")

@@ -43,6 +43,7 @@ __all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 
 SCHEMA = "beamopt-scene/1"
 
+MOST_POINTS, MOST_ELEMENTS = 20_000_000, 2_000_000_000  # of all sections judged at once
 SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how many; their stream
 
 
@@ -93,7 +94,7 @@ class Scene(Model):
     """
 
     schema_: Literal["beamopt-scene/1"] = Field(
-        "beamopt-scene/1", alias="schema", description="version of this file's format"
+        default="beamopt-scene/1", alias="schema", description="version of this file's format"
     )
     name: str = quantity("scene", "a short name, for titles and folders")
     description: str = quantity("", "one sentence on what it shows")
@@ -128,7 +129,27 @@ class Scene(Model):
     def _leaves_room(self) -> Scene:
         self.seal.check_fits(self.grid.build())
         self.making.check_fits(self.grid.build())
+        batch = round(max(1.0, self.search.crossover_probability) * self.search.population)
+        self.check_memory("search.population", self.search.population, batch)
         return self
+
+    def check_memory(self, key: str, population: int, batch: int) -> None:
+        """Refuse a batch of sections that takes gigabytes.
+
+        key, population : what asks for it. batch : sections judged at once.
+
+        Raises
+        ------
+        InputError : the key, its value and what it may be.
+        """
+        points, elements = self.section.feature_points, self.grid.radial * self.grid.angular
+        for each, most, what in (
+            (points, MOST_POINTS, "section.feature_points"),
+            (elements, MOST_ELEMENTS, "grid.radial × grid.angular"),
+        ):
+            if batch * each > most:
+                said = f"sections of a generation × {what} ({each:,}): at most {most:,}"
+                raise InputError("", key, population, said)
 
     def __repr__(self) -> str:
         search, ring = self.search, self.grid

@@ -15,6 +15,7 @@ from beamopt.input_file import read_text
 
 __all__ = ["Table", "read_table"]
 
+MOST_ROWS = 100_000
 FARTHEST = 1e6  # mm, kPa; beyond any actuator
 
 
@@ -62,6 +63,8 @@ def read_table(
         for number, line in enumerate(read_text(path).splitlines(), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
+    if len(lines) > MOST_ROWS:
+        raise InputError(path, "rows", len(lines), f"at most {MOST_ROWS} (take every n-th)")
     names = ",".join(units)
     if not lines:
         raise InputError(path, "", "an empty file", f"a table with the columns {names}")

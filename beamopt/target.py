@@ -33,7 +33,7 @@ class Target:
     >>> import beamopt
     >>> target: beamopt.Target = beamopt.load_scene("hand-drawn-workspace").load_target()
     >>> target
-    <Target: <Workspace: 27 tips at 0, 5, 10 kPa, up to 73.34 mm off the axis>, 0 trajectories>
+    <Target: <Workspace: 27 tips at 0, 50, 100 kPa, up to 35 mm off the axis>, 0 trajectories>
     """
 
     aim: Aim

@@ -10,10 +10,11 @@ from pydantic import Field, model_validator
 
 from beamopt.actuator import Vector
 from beamopt.aim import Aim
+from beamopt.errors import InputError
 from beamopt.model import Count, Model, Number, quantity
 from beamopt.pairs import read_pairs
 from beamopt.target import BaseFrame, Target
-from beamopt.trajectory import read_path
+from beamopt.trajectory import MOST_SAMPLES, read_path
 
 __all__ = ["MOST_PATHS", "TargetChoice"]
 
@@ -45,7 +46,7 @@ class TargetChoice(Model):
     seed: Count = quantity(0, 'seed of the random section, for kind "random"', low=0)
     file: str | None = quantity(None, "design (JSON) or table (CSV), relative to this scene")
     direction_weight: Number | None = Field(
-        None,
+        default=None,
         description="of a squared difference of unit tangents, for kind \"points\"; (length/10)² "
         "if left out",
         ge=0,
@@ -131,4 +132,8 @@ class TargetChoice(Model):
         paths = tuple(
             read_path(Path(path), length, self.path_step, self.base) for path in self.paths
         )
+        samples = sum(len(path) for path in paths)
+        if samples > MOST_SAMPLES:
+            said = f"{MOST_SAMPLES} samples at most, of all trajectories: a larger path_step"
+            raise InputError("", "target.paths", f"{samples} samples", said)
         return target.with_paths(paths, self.path_weight)

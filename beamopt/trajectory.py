@@ -11,7 +11,7 @@ from beamopt.errors import InputError
 from beamopt.table import read_table
 from beamopt.target import BaseFrame, check_scale
 
-__all__ = ["read_path", "sampled"]
+__all__ = ["MOST_SAMPLES", "read_path", "sampled"]
 
 MOST_SAMPLES = 10_000
 

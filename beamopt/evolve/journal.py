@@ -17,7 +17,8 @@ from types import TracebackType
 
 from beamopt.errors import InputError
 from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.files import refuse_link
+from beamopt.files import naming, refuse_link
+from beamopt.input_file import check_regular
 from beamopt.judge import Status, Verdict
 from beamopt.line_journal import with_digest, without_digest
 from beamopt.section.feature_points import FeaturePoints
@@ -44,6 +45,8 @@ class Journal:
     def __init__(self, path: Path) -> None:
         self.path = path
         refuse_link(path)
+        if path.exists():
+            check_regular(path, None)  # opening a pipe would wait; a journal may be of any size
         self._stream = path.open("ab")
         try:
             self._lines = self._whole_lines()
@@ -66,8 +69,9 @@ class Journal:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        os.fsync(self._stream.fileno())
-        self.close()
+        with naming(self.path):
+            os.fsync(self._stream.fileno())
+            self.close()
 
     def close(self) -> None:
         """Let go of the file."""
@@ -125,8 +129,9 @@ class Journal:
             return ""
 
     def _append(self, line: bytes) -> None:
-        self._stream.write(line)
-        self._stream.flush()
+        with naming(self.path):
+            self._stream.write(line)
+            self._stream.flush()
 
 
 def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:

@@ -123,14 +123,20 @@ def _xy(point: Geometry) -> tuple[float, float]:
 
 
 def _visible(polygons: Sequence[Geometry], sagitta: float) -> list[int]:
+    """Numbers of the polygons of which later ones leave something, ascending.
+
+    Each is compared with its neighbours only: a union of all later ones would be quadratic.
+    """
     import shapely
 
-    cover, found = shapely.Polygon(), []
+    tree, found = shapely.STRtree(polygons), set[int]()
     for number in reversed(range(len(polygons))):
+        near = tree.query(polygons[number], predicate="intersects").tolist()
+        later = [polygons[other] for other in sorted(near) if other in found]
+        cover = shapely.union_all(later, grid_size=LATTICE)
         if not _without(polygons[number], cover, sagitta).is_empty:
-            found.append(number)
-            cover = cover.union(polygons[number], grid_size=LATTICE)
-    return found[::-1]
+            found.add(number)
+    return sorted(found)
 
 
 def _without(geometry: Geometry, polygon: Geometry, sagitta: float) -> Geometry:

@@ -71,6 +71,7 @@ def find_front(
     >>> beamopt.find_front(scene, ["L", "mass"], population=8).evaluations
     8
     """
+    scene.check_memory("population", population, population)
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()
     judge = scene.judge(target)

@@ -37,7 +37,7 @@ KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 class StudyFile(Model):
     """What `study.json` says of the study in its folder."""
 
-    schema_: Literal["beamopt-study/1"] = Field("beamopt-study/1", alias="schema")
+    schema_: Literal["beamopt-study/1"] = Field(default="beamopt-study/1", alias="schema")
     seed: Count = quantity(..., "seed of the first iteration", low=0)
     overrides: list[str] = quantity(..., "keys replaced in every scene")
     iterations: Count = quantity(..., "runs of each target and combination", low=1)

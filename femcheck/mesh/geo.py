@@ -12,7 +12,7 @@ from beamopt.outline.outline import Loop, Outline
 from beamopt.outline.ring import USUAL_RADIUS
 from femcheck.mesh.wall_thickness import thickness_behind
 
-__all__ = ["SectionSizes", "geo_script"]
+__all__ = ["SectionSizes", "geo_script", "least_triangles"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +40,8 @@ class SectionSizes:
 def geo_script(outline: Outline, sizes: SectionSizes) -> str:
     """The script; physical groups: the material is 10, the free edges 1, supply i's edges i + 1."""
     loops = [loop for piece in outline.pieces for loop in piece.loops]
-    a = np.concatenate([loop.points for loop in loops])
-    b = np.concatenate([np.roll(loop.points, -1, axis=0) for loop in loops])
-    lengths = np.hypot(*(b - a).T)
-    walls = thickness_behind(a, b)
+    a, lengths, parts = _edges(loops, outline.outer_radius, sizes)
     largest = sizes.largest * outline.outer_radius / USUAL_RADIUS
-    longest = sizes.factor * np.minimum(sizes.per_wall * walls, largest)
-    parts = np.maximum(np.ceil(lengths / longest - 0.01), 1).astype(np.int64)
     lines = [
         *_settings(sizes.factor * largest),
         *(f"Point({k}) = {{{x!r}, {y!r}, 0}};" for k, (x, y) in enumerate(a.tolist(), 1)),
@@ -55,6 +50,29 @@ def geo_script(outline: Outline, sizes: SectionSizes) -> str:
         *_size_fields(lengths / parts, sizes),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _edges(
+    loops: list[Loop], outer_radius: float, sizes: SectionSizes
+) -> tuple[FloatArray, FloatArray, IndexArray]:
+    """Starts (n, 2), lengths (n,) of all edges, and parts (n,) that each is cut into."""
+    a = np.concatenate([loop.points for loop in loops])
+    b = np.concatenate([np.roll(loop.points, -1, axis=0) for loop in loops])
+    lengths = np.hypot(*(b - a).T)
+    walls = thickness_behind(a, b)
+    largest = sizes.largest * outer_radius / USUAL_RADIUS
+    longest = sizes.factor * np.minimum(sizes.per_wall * walls, largest)
+    parts = np.maximum(np.ceil(lengths / longest - 0.01), 1)
+    return a, lengths, parts.astype(np.int64)
+
+
+def least_triangles(outline: Outline, sizes: SectionSizes) -> int:
+    """Triangles that a mesh has at least: one at each part of an edge, the largest elsewhere."""
+    loops = [loop for piece in outline.pieces for loop in piece.loops]
+    _, _, parts = _edges(loops, outline.outer_radius, sizes)
+    side = sizes.factor * sizes.largest * outline.outer_radius / USUAL_RADIUS
+    equilateral = np.sqrt(3) / 4 * side**2
+    return int(max(parts.sum(), outline.moments.area / equilateral))
 
 
 def _settings(largest: float) -> Iterator[str]:

@@ -17,12 +17,15 @@ import numpy as np
 
 from beamopt.arrays import FloatArray, IndexArray
 from beamopt.brief import Brief, changed_fields
+from beamopt.files import naming
 from beamopt.outline.outline import Outline
 from beamopt.scratch import scratch_folder
-from femcheck.mesh.geo import SectionSizes, geo_script
+from femcheck.mesh.geo import SectionSizes, geo_script, least_triangles
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["MeshFailure", "MeshProblem", "Mesher", "read_section"]
+
+MOST_TRIANGLES = 2_000_000  # gmsh takes a kilobyte for each, a solid thousands
 
 
 class MeshProblem(Enum):
@@ -42,6 +45,7 @@ class MeshProblem(Enum):
     WRONG = "gmsh's mesh is not that of the outline"
     FATAL = "no solid can be made of the outline"
     INVERTED = "a mesh element is inside out or flat"
+    TOO_FINE = "the mesh would take more memory than there is"
 
     @property
     def is_interrupted(self) -> bool:
@@ -102,12 +106,17 @@ class Mesher:
         """Triangulate a section, or say why that failed."""
         if not outline.buildable:
             return MeshFailure(MeshProblem.FATAL, str(outline.faults[0]))
+        least = least_triangles(outline, sizes)
+        if least > MOST_TRIANGLES:
+            said = f"at least {least:,} triangles, at most {MOST_TRIANGLES:,} are made"
+            return MeshFailure(MeshProblem.TOO_FINE, f"{said}: thin walls, or a larger size")
         command = _find(self.command)
         if command is None:
             return MeshFailure(MeshProblem.NO_GMSH, self.command or "pip install gmsh")
         with scratch_folder() as folder:
             script, written = folder / "section.geo", folder / "section.msh"
-            script.write_text(geo_script(outline, sizes), encoding="utf-8")
+            with naming(script):
+                script.write_text(geo_script(outline, sizes), encoding="utf-8")
             arguments = [*command, "-2", "-v", "1", "-format", "msh41"]
             failure = _run([*arguments, "-o", str(written), str(script)], self.seconds)
             if failure is not None:

@@ -7,6 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from beamopt.errors import InputError
 from beamopt.line_journal import LineJournal
 from femcheck.stability.axis import Axis
@@ -62,6 +64,11 @@ class Journal:
         self._lines.add(data)
 
 
+TRACES = TypeAdapter(TraceResult)
+CELLS = TypeAdapter(CellResult)
+"""Checks that every value is of its kind, which lines without digests need not be."""
+
+
 def _or_null(value: float) -> float | None:
     return value if value == value else NOT_A_NUMBER
 
@@ -80,7 +87,7 @@ def _result(data: dict[str, Any]) -> Result:
     if data["number"] in (TRACE, FINER):
         values["snaps"] = tuple(values["snaps"])
         values["track"] = tuple(tuple(_or_nan(one) for one in row) for row in values["track"])
-        return TraceResult(**values)
+        return TRACES.validate_python(asdict(TraceResult(**values)))
     for name in ("tip", "beam"):
         values[name] = None if values[name] is None else tuple(values[name])
-    return CellResult(**values)
+    return CELLS.validate_python(asdict(CellResult(**values)))

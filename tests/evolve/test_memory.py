@@ -17,7 +17,7 @@ from beamopt.pareto.run import find_front
 SMALL = [
     "grid.radial=8",
     "grid.angular=24",
-    "section.feature_points=20",
+    "section.feature_points=100",
     "search.generations=1000000",
 ]
 FIRST, THEN = 1500, 3000

@@ -64,17 +64,16 @@ class Server:
 def held(folder: Path) -> dict[str, tuple[object, ...]]:
     """What a folder holds: names, kinds, times of change, bytes of regular files."""
     found: dict[str, tuple[object, ...]] = {}
-    for above, folders, files in os.walk(os.fsencode(folder)):
-        for name in (*folders, *files):
-            path = os.path.join(above, name)
-            state = os.lstat(path)
+    for above, folders, files in os.walk(folder):
+        for path in (Path(above) / name for name in (*folders, *files)):
+            state = path.lstat()
             content: object = ""
-            if os.path.islink(path):
-                content = os.readlink(path)
-            elif os.path.isfile(path) and state.st_size < 2**24:
-                content = Path(os.fsdecode(path)).read_bytes()
-            changed = 0 if os.path.isdir(path) else state.st_mtime_ns
-            found[os.fsdecode(path)] = (state.st_mode, state.st_size, changed, content)
+            if path.is_symlink():
+                content = path.readlink()
+            elif path.is_file() and state.st_size < 2**24:
+                content = path.read_bytes()
+            changed = 0 if path.is_dir() else state.st_mtime_ns
+            found[str(path)] = (state.st_mode, state.st_size, changed, content)
     return found
 
 

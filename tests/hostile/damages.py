@@ -65,18 +65,18 @@ CONTENTS: dict[str, Damage] = {
 }
 NUMBERS: dict[str, Damage] = {
     f"{('first', 'last')[place]} {name}": _number(place, value)
-    for place in (0, -1)
-    for name, value in {
-        "nan": b"NaN",
-        "toml nan": b"nan",
-        "1e999": b"1e999",
-        "-1e999": b"-1e999",
-        "digits": b"9" * 400,
-        "many digits": b"9" * 5000,
-        "minus": b"-1",
-        "text": b'"x"',
-        "list": b"[]",
-    }.items()
+    for place, name, value in (
+        (0, "nan", b"NaN"),
+        (0, "toml nan", b"nan"),
+        (0, "-1e999", b"-1e999"),
+        (0, "digits", b"9" * 400),
+        (0, "list", b"[]"),
+        (-1, "1e999", b"1e999"),
+        (-1, "many digits", b"9" * 5000),
+        (-1, "digits", b"9" * 400),
+        (-1, "minus", b"-1"),
+        (-1, "text", b'"x"'),
+    )
 }
 PLACES: dict[str, Damage] = {
     "missing": lambda file: file.unlink(),

@@ -1,7 +1,7 @@
 """Commands run one after another, each in a fork of a process that has loaded everything.
 
-Reads a case a line, writes a result a line, both JSON. A fork takes a tenth of a second,
-a process two seconds.
+Reads a case a line, writes a result a line, both JSON. A fork takes a tenth of a second, a process
+of its own two.
 """
 
 from __future__ import annotations

@@ -12,16 +12,13 @@ from pathlib import Path
 import pytest
 
 from beamopt.cli.application import run
+from tests.hostile.programs import MAIN
 
 PATIENCE = 60.0  # s
 SIGNALS = {
     signal.SIGINT: ("interrupted", 130),
     signal.SIGTERM: ("terminated", 143),
     signal.SIGHUP: ("hung up", 129),
-}
-MAIN = {
-    "beamopt": "from beamopt.cli import main; main()",
-    "femcheck": "from femcheck.cli import main; main()",
 }
 
 

@@ -10,6 +10,7 @@ from tests.validation import (
     genotypes,
     geometry,
     material,
+    memory,
     never_worse,
     published_solids,
     refinement,
@@ -37,4 +38,5 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "regression": regression.checks,
     "refinement": refinement.checks,
     "never-worse": never_worse.checks,
+    "memory": memory.checks,
 }

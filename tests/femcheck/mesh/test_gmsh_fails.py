@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from femcheck.mesh.geo import SectionSizes, geo_script
+from femcheck.mesh.geo import SectionSizes, geo_script, least_triangles
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, MeshProblem
 from tests.femcheck import sections
 
@@ -151,3 +151,16 @@ def test_not_executable(tmp_path: Path) -> None:
     file.write_text("#!/no/such/interpreter\n")
     file.chmod(0o755)
     assert failure_of(str(file)).problem is MeshProblem.CRASHED
+
+
+def test_a_mesh_beyond_the_memory_is_not_begun(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    least = least_triangles(OUTLINE, SectionSizes())
+    section = Mesher().mesh(OUTLINE, SectionSizes())
+    assert not isinstance(section, MeshFailure)
+    assert least <= len(section.triangles) < 20 * least
+    monkeypatch.setattr("femcheck.mesh.gmsh_section.MOST_TRIANGLES", least - 1)
+    failure = failure_of(stand_in(tmp_path, f"touch {tmp_path}/begun"))
+    assert failure.problem is MeshProblem.TOO_FINE
+    assert not (tmp_path / "begun").exists()

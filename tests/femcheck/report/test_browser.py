@@ -7,6 +7,7 @@ import base64
 import hashlib
 import os
 import shutil
+import socket
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -52,6 +53,10 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         if os.environ.get("CI"):
             pytest.fail("no chromium, no chromedriver: install them with apt-get")
         pytest.skip("no chromium here")
+    try:
+        socket.getaddrinfo("localhost", None)
+    except OSError as error:  # driver and browser talk over it
+        pytest.skip(f"localhost has no address here: {error}")
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()
