@@ -246,11 +246,13 @@ def test_temporary_folders_of_killed_processes_are_deleted(
     (dead / "section.geo").write_text("half")
     process, living = begun(tmp_path / "living", "KIND")
     number = dead.name.split("-")[1]
-    others = [tmp_path / name for name in ("beamopt-mine", f"beamopt-{number}", "tmp-1-x")]
+    unlocked = f"beamopt-{os.getpid()}-x"  # as it is at first
+    foreign = ("beamopt-mine", f"beamopt-{number}", "tmp-1-x")
+    others = [tmp_path / name for name in (unlocked, *foreign)]
     for other in others:
         other.mkdir()
     link, file = tmp_path / f"beamopt-{number}-link", tmp_path / f"beamopt-{number}-file"
-    link.symlink_to(others[0])
+    link.symlink_to(others[1])
     file.write_text("mine")
     with process, scratch_folder() as own:
         clear_scratch()

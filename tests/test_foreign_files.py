@@ -12,10 +12,13 @@ import femcheck.cli.application
 from beamopt.bundled import bundled_scenes
 from beamopt.file_lock import locked
 from beamopt.folder import LOCK
+from tests.femcheck.regression.small import small_design
 from tests.validation.resume import everything
 
+ROOT = Path(__file__).resolve().parents[1]
 SCENES = next(iter(bundled_scenes().values())).parent
 OPEN, SEALED = SCENES / "hand_drawn_section.json", SCENES / "sealed_section.json"
+SMALL = "small.json"  # in the working directory
 
 COMMANDS = {
     "optimize": ["optimize", "hand-drawn-section"],
@@ -26,10 +29,10 @@ COMMANDS = {
     "chart of rods": ["chart", "gravity"],
     "map of rods": ["stability", "--samples", "1"],
     "export": ["export", str(OPEN), "--format", "svg"],
-    "check": ["femcheck", "run", str(SEALED)],
-    "prediction": ["femcheck", "run", str(SEALED), "--law", "neo-hookean"],
-    "accuracy": ["femcheck", "run", str(SEALED), "--accuracy", "1mm"],
-    "chart": ["femcheck", "chart", str(SEALED)],
+    "check": ["femcheck", "run", SMALL],
+    "prediction": ["femcheck", "run", SMALL, "--law", "neo-hookean"],
+    "accuracy": ["femcheck", "run", SMALL, "--accuracy", "1mm"],
+    "chart": ["femcheck", "chart", SMALL],
     "map": ["femcheck", "stability"],
     "map again": ["femcheck", "stability", "--redraw"],
     "baseline": ["femcheck", "baseline", "hand_drawn_section"],
@@ -47,6 +50,17 @@ FOREIGN = {
     **dict.fromkeys(("provenance.json", "timing.csv", "bound.png", "target.csv"), "mine"),
     ".front.csv.12.tmp": "mine",
 }
+
+ALONE = ("journal.jsonl", "scene.toml", "check.json", "study.json", "export.json", "bound.json")
+ALONE += ("design.json", "provenance.json")
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A working directory with a small design that has a solid."""
+    folder = tmp_path_factory.mktemp("place")
+    small_design(sealed=True).save(folder / SMALL)
+    monkeypatch.chdir(folder)
 
 
 def ends(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
@@ -75,7 +89,7 @@ def test_a_second_writer_is_refused(
 ) -> None:
     monkeypatch.setattr("beamopt.file_lock.PATIENCE", 0.0)
     if name == "map again":
-        shutil.copy("reports/stability/journal.jsonl", tmp_path)
+        shutil.copy(ROOT / "reports" / "stability" / "journal.jsonl", tmp_path)
     with locked(tmp_path / LOCK):
         before = everything(tmp_path)
         said = refused(name, tmp_path, capsys)
@@ -88,10 +102,9 @@ def test_a_second_writer_is_refused(
 def test_another_s_folder_is_left_as_it_is(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """All files together, then each alone: none under any name is taken for the command's own."""
-    folders = {"all": FOREIGN, **{file: {file: text} for file, text in FOREIGN.items()}}
-    del folders[".front.csv.12.tmp"]  # alone it is what a kill leaves
-    for number, files in enumerate(folders.values()):
+    """All files together, then some alone: none under any name is taken for the command's own."""
+    folders = [FOREIGN, *({file: FOREIGN[file]} for file in ALONE)]
+    for number, files in enumerate(folders):
         folder = tmp_path / str(number)
         folder.mkdir()
         for file, text in files.items():

@@ -235,7 +235,7 @@ def test_a_changed_target_file_does_not_go_on(tmp_path: Path) -> None:
 def test_folders_with_something_else_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("precious")
     for resume in (False, True):
-        with pytest.raises(InputError, match=r"resume|nothing to go on with"):
+        with pytest.raises(InputError, match="holds files"):
             optimize(SCENE, tmp_path, resume=resume)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 

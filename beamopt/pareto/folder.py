@@ -23,7 +23,7 @@ __all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
 
 KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
-DESIGN = re.compile(r"\bfront-\d{3,}\.json\b")
+DESIGN = re.compile(r"front-\d{3,}\.json")
 NAMES = (
     *(KIND.marker, "scene.toml", *SOURCES.values(), *PATHS, "front-*.json", "front.csv"),
     *("history.csv", "summary.json", *FIGURES, "timing.csv", "provenance.json"),
@@ -67,9 +67,10 @@ def _delete_designs(folder: Path, wanted: Collection[str]) -> None:
     table = folder / "front.csv"
     if not table.exists():
         return
-    named = set(DESIGN.findall(table.read_text(encoding="utf-8", errors="replace")))
-    for name in named.difference(wanted):
-        (folder / name).unlink(missing_ok=True)
+    cells = re.split("[,\n]", table.read_text(encoding="utf-8", errors="replace"))
+    for name in set(cells).difference(wanted):
+        if DESIGN.fullmatch(name):
+            (folder / name).unlink(missing_ok=True)
 
 
 def _designs(front: Front) -> dict[int, Design]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,6 +15,7 @@ from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
 from beamopt.design import load_design
 from beamopt.errors import InputError
+from beamopt.files import write_changed
 from beamopt.judge import in_parts
 from beamopt.pareto.run import find_front
 from beamopt.pareto.search import FrontRecord
@@ -98,6 +101,63 @@ def test_a_design_of_a_front_says_what_its_rules_added(tmp_path: Path) -> None:
     assert front.designs
     assert free.designs
     assert "R" not in load_design(tmp_path / "free" / "front-000.json").notes
+
+
+def test_only_designs_that_its_table_names_are_deleted(tmp_path: Path) -> None:
+    """A person's copies beside them stay, whatever their number."""
+
+    def front(generations: int) -> set[str]:
+        scene = load_scene(WANTED, [f"search.generations={generations}"])
+        find_front(scene, ("L", "mass"), tmp_path, population=16, resume=True, figures=False)
+        return {file.name for file in tmp_path.glob("front-*.json")}
+
+    before = front(0)
+    mine = {"front-mine.json", "front-900.json", "front-1.json"}
+    for name in mine:
+        (tmp_path / name).write_text("mine")
+    with (tmp_path / "front.csv").open("a") as table:  # named twice, or where no name stands
+        table.write("../front-900.json.bak\n")
+    after = front(4)
+    assert mine < after
+    assert before - after  # the front has other designs now
+    assert {(tmp_path / name).read_text() for name in mine} == {"mine"}
+    named = (tmp_path / "front.csv").read_text()
+    assert all(name in named for name in after - mine)
+
+
+def test_a_front_cut_while_it_is_written_leaves_no_design_that_its_table_does_not_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever was written last, and gone on with to a longer search."""
+
+    def front(folder: Path, generations: int) -> None:
+        scene = load_scene(WANTED, [f"search.generations={generations}"])
+        find_front(scene, ("L", "mass"), folder, population=16, resume=True, figures=False)
+
+    def writes(most: int) -> Callable[[Path, str], bool]:
+        left = iter(range(most))
+
+        def write(path: Path, text: str) -> bool:
+            if next(left, None) is None:
+                raise InterruptedError
+            return write_changed(path, text)
+
+        return write
+
+    is_cut, most = True, 0
+    while is_cut:
+        folder = tmp_path / str(most)
+        with monkeypatch.context() as patch:
+            patch.setattr("beamopt.pareto.folder.write_changed", writes(most))
+            try:
+                front(folder, 0)
+                is_cut = False
+            except InterruptedError:
+                most += 1
+        front(folder, 4)  # whose front has fewer designs
+        named = set(re.findall(r"front-\d+\.json", (folder / "front.csv").read_text()))
+        assert {file.name for file in folder.glob("front-*.json")} == named
+    assert most > 5
 
 
 def test_two_processes_can_not_write_one_front(

@@ -26,7 +26,7 @@ def test_it_writes_over_no_other_file(
     out = tmp_path / "thesis.html"
     out.write_text("<!doctype html><p>years of work")
     assert run(["report", str(chart), "--out", str(out)]) == 2
-    assert "is no report of ours; --force" in capsys.readouterr().err
+    assert "was not written by femcheck report; --force" in capsys.readouterr().err
     assert out.read_text().endswith("years of work")
     assert run(["report", str(chart), "--out", str(out), "--force"]) == 0
     assert "years of work" not in out.read_text()
