@@ -137,6 +137,11 @@ class Prediction(BesideBeam):
         rest = rest * self.subject.design.actuator.length
         return float(last.volumes @ weights / rest) if last is not None and rest > 0 else np.nan
 
+    @property
+    def is_loaded(self) -> NDArray[np.bool_]:
+        """(27,) whether any supply has pressure; empty without a solid."""
+        return np.array([place is not None for place in self.places], dtype=np.bool_)
+
     @cached_property
     def tips(self) -> FloatArray:
         """(27, 3) tips [mm], the base's material centroid at the origin; NaN without an answer."""
