@@ -16,6 +16,8 @@ from .errors import NoEquilibriumError as NoEquilibriumError
 from .evolve.algorithm import Generation as Generation
 from .evolve.algorithm import GeneticAlgorithm as GeneticAlgorithm
 from .evolve.algorithm import Individual as Individual
+from .evolve.history import GenerationNumbers as GenerationNumbers
+from .evolve.history import History as History
 from .evolve.run import run as run
 from .evolve.stopping import StopReason as StopReason
 from .grid_keys import Grid as Grid

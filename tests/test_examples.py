@@ -48,14 +48,15 @@ def test_every_public_name_shows_its_use(
 
 
 def script() -> str:
-    """One program of all examples, a function each; its processes import it again."""
-    parts = ['"""The examples of all public names."""\n']
+    """One program of all examples, a function and a folder each; its workers import it again."""
+    parts = ['"""The examples of all public names."""\nimport os\n']
     calls = []
     for (face, name), called in zip(NAMES, IDS, strict=True):
         function = called.replace(".", "_")
         body = "".join(one.source for one in example_of(face, name).examples)
         parts.append(f"\ndef {function}() -> None:\n{indent(body, '    ')}\n")
-        calls.append(f"    {function}()\n")
+        calls.append(f"    os.mkdir({function!r})\n    os.chdir({function!r})\n")
+        calls.append(f"    {function}()\n    os.chdir(os.pardir)\n")
     return "".join([*parts, '\nif __name__ == "__main__":\n', *calls])
 
 
@@ -85,6 +86,7 @@ def test_the_script_runs_from_the_wheel(python: Path, tmp_path: Path) -> None:
     file = tmp_path / "script.py"
     file.write_text(script())
     clean = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    clean["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), clean["PATH"]])  # gmsh
     where = "import beamopt, femcheck; print(beamopt.__file__, femcheck.__file__)"
     asked = [str(python), "-I", "-c", where]
     said = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=tmp_path)

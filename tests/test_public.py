@@ -152,7 +152,8 @@ def instances() -> dict[str, object]:
     rod = Tried(RodOnOutline(), reply, 1 / 3)
     made = [
         *(getattr(scene, name) for name in type(scene).model_fields),
-        scene, target, found, last, last.best, verdict, found.best, found.best.section, run,
+        scene, target, found, last, last.best, found.history,
+        found.history[-1], verdict, found.best, found.best.section, run,
         found.best.points, found.best.feature_points, found.best.moments, found.best.workspace,
         found.best.response, beamopt.PolarGrid(), beamopt.SealRules(), beamopt.Plan(),
         beamopt.Fault(beamopt.FaultKind.CUT, 1 / 3, (1 / 3, 1 / 3), (1, 2, 3), 1 / 3, 1),

@@ -38,10 +38,11 @@ class Individual:
     Examples
     --------
     >>> import beamopt
-    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=0"]))
-    >>> individual: beamopt.Individual = found.history[-1].best_ever
-    >>> individual.verdict.L == found.verdict.L
-    True
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
+    >>> last = beamopt.run(scene, scene.judge(scene.load_target())).last
+    >>> individual: beamopt.Individual = last.best_ever
+    >>> individual.verdict.status.name
+    'JUDGED'
     """
 
     points: FeaturePoints
@@ -65,8 +66,8 @@ class Generation:
     Examples
     --------
     >>> import beamopt
-    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=1"]))
-    >>> last: beamopt.Generation = found.history[-1]
+    >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
+    >>> last: beamopt.Generation = beamopt.run(scene, scene.judge(scene.load_target())).last
     >>> last.index, last.evaluations
     (1, 38)
     """

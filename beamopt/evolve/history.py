@@ -23,6 +23,14 @@ class GenerationNumbers(NamedTuple):
     best_loss : of the individual with the lowest L + R in it.
     ever_loss, ever_neighbour_loss, ever_rule_loss : L, K, R of the one with the lowest L + R of all
     that were judged so far.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=1"]))
+    >>> numbers: beamopt.GenerationNumbers = found.history[-1]
+    >>> numbers.generation, numbers.evaluations
+    (1, 38)
     """
 
     generation: int
@@ -43,7 +51,16 @@ WIDTH = len(GenerationNumbers._fields)
 
 
 class History(Sequence[GenerationNumbers]):
-    """The numbers of every generation, the initial population first; 88 bytes each."""
+    """The numbers of every generation, the initial population first; 88 bytes each.
+
+    Examples
+    --------
+    >>> import beamopt
+    >>> found = beamopt.optimize(beamopt.load_scene("random-section", ["search.generations=1"]))
+    >>> history: beamopt.History = found.history
+    >>> len(history)
+    2
+    """
 
     def __init__(self) -> None:
         self._numbers = array("d")

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beamopt.arrays import FloatArray
 from beamopt.brief import Brief
@@ -136,6 +137,11 @@ class Prediction(BesideBeam):
         rest = self.solids["standard"].section.moments.chamber_areas @ weights
         rest = rest * self.subject.design.actuator.length
         return float(last.volumes @ weights / rest) if last is not None and rest > 0 else np.nan
+
+    @property
+    def is_loaded(self) -> NDArray[np.bool_]:
+        """(27,) whether any supply has pressure; empty without a solid."""
+        return np.array([place is not None for place in self.places], dtype=np.bool_)
 
     @cached_property
     def tips(self) -> FloatArray:

@@ -68,6 +68,7 @@ def test_of_a_prediction_without_gmsh() -> None:
     missing = MeshFailure(MeshProblem.NO_GMSH)
     found = Prediction(SUBJECT, options, law, missing, None, {}, (), (), {})
     assert code_of(found) is LOST
+    assert (found.unanswered, found.holds) == (0, False)
 
 
 @pytest.mark.parametrize(
