@@ -58,10 +58,10 @@ class FolderKind:
         return any(self._marks(file) for file in folder.glob(self.marker) if file.is_file())
 
     def _marks(self, file: Path) -> bool:
-        texts = [text.encode() for text in self.begins]
+        beginnings = [one.encode() for one in self.begins]
         with file.open("rb") as stream:
             head = b"".join(stream.read(HEAD).split())
-        return any(head.startswith(text) or text.startswith(head) for text in texts)
+        return any(head.startswith(one) or one.startswith(head) for one in beginnings)
 
 
 @contextmanager
