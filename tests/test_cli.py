@@ -163,7 +163,7 @@ MISTAKES = [
     (["optimize", "random-section", "--set", "search.generations=3\nfoo=1"], "--set"),
     (["optimize", "random-section", "--set", "search.seed=" + "9" * 5000], "search.seed"),
     (["optimize", "random-section", "--set", "a=" + "[" * 5000], "--set: a"),
-    (["optimize", "random-section", "--set", "a" + ".a" * 3000 + "=1"], "--set: a"),
+    (["optimize", "random-section", "--set", "a" + ".a" * 3000 + "=1"], "at most 16 parts"),
     (["optimize", "nowhere.toml"], "no such scene; a path, or one of: gravity, hand-drawn-section"),
     (["optimize", "random-section", "--seed", "-1"], "--seed"),
     (["optimize", "random-section", "--workers", "0"], "--workers"),
