@@ -13,7 +13,7 @@ from beamopt.study.plan import Plan
 from beamopt.study.run import run_study
 from beamopt.study.table import SUMMARIES, Outcome, targets_of, title
 
-__all__ = ["study_command"]
+__all__ = ["refinement_table", "study_command"]
 
 
 def study_command(out: Path, plan: Plan, workers: int, resume: bool) -> None:
@@ -27,7 +27,7 @@ def study_command(out: Path, plan: Plan, workers: int, resume: bool) -> None:
         outcomes = run_study(out, plan, workers=workers, resume=resume, callback=show)
     console.print(_losses(outcomes))
     if plan.refine:
-        console.print(_refinements(outcomes))
+        console.print(refinement_table(outcomes))
     console.print(f"files: {out}/ (table.md, table.csv, convergence.png, …)", soft_wrap=True)
 
 
@@ -42,7 +42,7 @@ def _losses(outcomes: Sequence[Outcome]) -> Table:
     return table
 
 
-def _refinements(outcomes: Sequence[Outcome]) -> Table:
+def refinement_table(outcomes: Sequence[Outcome]) -> Table:
     """What refining came to, with how long it took as a share of the search."""
     table = Table(title="refined: the best design of each search")
     table.add_column("target")
@@ -53,7 +53,9 @@ def _refinements(outcomes: Sequence[Outcome]) -> Table:
         both = [(one, one.refined) for one in mine if one.refined is not None]
         if not both:
             continue
-        shares = [found.seconds / one.seconds for one, found in both]
+        # a search that was judged by an earlier call has no time of its own
+        shares = [found.seconds / one.seconds for one, found in both if one.seconds > 0]
+        timed = np.isfinite(shares).all() and bool(shares)
         table.add_row(
             title(target),
             f"{np.mean([found.L_before for _, found in both]):.2f}",
@@ -61,7 +63,7 @@ def _refinements(outcomes: Sequence[Outcome]) -> Table:
             f"{max(found.L for _, found in both):.4g}",
             f"{np.mean([found.ratio_before for _, found in both]):.3f}",
             f"{np.mean([found.ratio for _, found in both]):.3f}",
-            f"{np.mean(shares):.0%} of the search",
-            f"{max(shares):.0%}",
+            f"{np.mean(shares):.0%} of the search" if timed else "–",
+            f"{max(shares):.0%}" if timed else "–",
         )
     return table

@@ -1,4 +1,5 @@
 import csv
+import math
 import shutil
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 
 from beamopt.bound.certificate import BoundStatus
 from beamopt.cli.application import run
+from beamopt.cli.study import refinement_table
 from beamopt.design import load_design
 from beamopt.errors import InputError
 from beamopt.judge import Judge, Status, Verdict
@@ -14,7 +16,14 @@ from beamopt.optimisation import optimize
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.report import names
 from beamopt.study.run import run_study
-from beamopt.study.table import PAPER, Outcome, comparison_markdown, table_csv, table_markdown
+from beamopt.study.table import (
+    PAPER,
+    Outcome,
+    RefinedOutcome,
+    comparison_markdown,
+    table_csv,
+    table_markdown,
+)
 from beamopt.timing import read_times
 from tests.validation.resume import content, everything
 
@@ -306,3 +315,14 @@ def test_targets_of_a_study_are_bundled_scenes() -> None:
         Plan(targets=("mine",))
     with pytest.raises(InputError, match="once each"):
         Plan(targets=("random-section", "random-section"))
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shown"), [(2.0, "50% of the search"), (0.0, "–"), (math.nan, "–")]
+)
+def test_a_search_judged_by_an_earlier_call_has_no_time(seconds: float, shown: str) -> None:
+    one = Plan().runs()[0]
+    refined = RefinedOutcome(1.0, 0.1, 0.5, 0.4, 10, 1.0)
+    outcome = Outcome(one, Verdict(1.0, 2.0), 1.0, 1820, (1.0,), seconds, refined)
+    cells = [next(iter(column.cells)) for column in refinement_table([outcome]).columns]
+    assert cells[-2] == shown
