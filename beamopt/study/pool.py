@@ -9,6 +9,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
@@ -29,6 +30,7 @@ def processes(workers: int) -> Iterator[Executor]:
     before = {name: os.environ.get(name) for name in THREAD_SETTINGS}
     os.environ.update(dict.fromkeys(THREAD_SETTINGS, "1"))
     ended, end = multiprocessing.Pipe(duplex=False)
+    _start_tracker()
     pool = _Processes(
         workers,
         mp_context=multiprocessing.get_context("spawn"),
@@ -46,6 +48,20 @@ def processes(workers: int) -> Iterator[Executor]:
         end.close()
         for name, value in before.items():
             os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _start_tracker() -> None:
+    """Start Python's tracker of semaphores, with the signal of a closed terminal blocked.
+
+    That signal goes to every process of the terminal; Python warns where the tracker has ended.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class _Processes(ProcessPoolExecutor):

@@ -204,10 +204,10 @@ def test_searches_are_read(tmp_path: Path) -> None:
     from beamopt.run_folder import RunFolder
     from beamopt.scene import load_scene
 
-    folder = RunFolder.open(tmp_path / "search", resume=False)
     scene = load_scene("random-section", ["search.generations=1"])
-    folder.begin(scene, scene.load_target())
-    folder.write_result(optimize(scene), figures=False)
+    with RunFolder.open(tmp_path / "search", resume=False) as folder:
+        folder.begin(scene, scene.load_target())
+        folder.write_result(optimize(scene), figures=False)
     run = read_search_run(folder.path)
     assert run.name == "random-section, seed 0"
     assert run.seconds > 0
