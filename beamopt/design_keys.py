@@ -17,7 +17,7 @@ __all__ = ["DesignKeys"]
 
 
 class DesignKeys(Model):
-    """What a design file holds."""
+    """Keys of a design file."""
 
     schema_: Literal["beamopt-design/1"] = Field(alias="schema")
     grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")

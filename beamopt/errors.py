@@ -74,7 +74,7 @@ class NoEquilibriumError(ValueError):
 
 
 class NotComputedError(RuntimeError):
-    """What was asked for could not be computed: a process or the machine gave out, not the input.
+    """Failure to compute: a process or the machine gave out, not the input.
 
     what : the task. why : in the words of people, with the way out where there is one.
     """

@@ -117,7 +117,7 @@ def check_replaceable(path: Path, mark: str, made_by: str, *, force: bool = Fals
 
 
 def _ends_of(path: Path) -> bytes:
-    """What a file holds at its beginning and its end."""
+    """Return the beginning and the end of a file's content."""
     with path.open("rb") as stream:
         head = stream.read(END)
         stream.seek(max(len(head), path.stat().st_size - END))

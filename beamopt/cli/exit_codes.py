@@ -11,7 +11,7 @@ __all__ = ["ExitCode", "end_with", "joined"]
 
 
 class ExitCode(IntEnum):
-    """What a command's end means to whoever called it."""
+    """Meaning of a command's end to its caller."""
 
     HOLDS = 0
     DOES_NOT_HOLD = 1

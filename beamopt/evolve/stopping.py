@@ -13,7 +13,7 @@ __all__ = ["StopReason", "why_stop"]
 
 
 class StopReason(Enum):
-    """How a search ended; the value is the text shown to people.
+    """End of a search; the value is the text shown to people.
 
     Examples
     --------

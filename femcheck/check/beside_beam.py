@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,15 +16,15 @@ SMALLEST_DISPLACEMENT = 1e-2  # of the largest one: below it a share says nothin
 STILL = 1e-9  # mm
 
 
-class BesideBeam:
+class BesideBeam(ABC):
     """What follows from a subject and the solid's tips at its 27 pressure combinations."""
 
     subject: Subject
 
     @property
+    @abstractmethod
     def solid_tips(self) -> FloatArray:
         """(27, 3) of the solid [mm]; NaN without an answer."""
-        raise NotImplementedError
 
     @property
     def is_loaded(self) -> NDArray[np.bool_]:
