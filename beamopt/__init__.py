@@ -10,6 +10,6 @@ Units are mm, kPa, and so mN and mN·mm.
 
 from __future__ import annotations
 
-from beamopt.public_names import public_names
+from beamopt.base.public_names import public_names
 
 __getattr__, __dir__, __all__ = public_names(__name__, __file__)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from beamopt.line_journal import with_digest, without_digest
+from beamopt.storage.line_journal import with_digest, without_digest
 
 __all__ = ["flipped", "rewritten", "without_digests"]
 

@@ -38,7 +38,7 @@ def test_every_public_name_shows_its_use(
 ) -> None:
     """The example names what it is of, and gives what it shows."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("femcheck.picture.draw", lambda *scene: False)
+    monkeypatch.setattr("femcheck.solved.picture.draw", lambda *scene: False)
     example = example_of(face, name)
     assert any(f".{name}" in one.source for one in example.examples)
     runner = doctest.DocTestRunner(verbose=False)

@@ -9,9 +9,9 @@ import pytest
 
 import beamopt.cli.application
 import femcheck.cli.application
-from beamopt.bundled import bundled_scenes
-from beamopt.file_lock import locked
-from beamopt.folder import LOCK
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.storage.file_lock import locked
+from beamopt.storage.result_folder import LOCK
 from tests.femcheck.regression.small import small_design
 from tests.validation.resume import everything
 
@@ -87,7 +87,7 @@ def refused(name: str, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
 def test_a_second_writer_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("beamopt.file_lock.PATIENCE", 0.0)
+    monkeypatch.setattr("beamopt.storage.file_lock.PATIENCE", 0.0)
     if name == "map again":
         shutil.copy(ROOT / "reports" / "stability" / "journal.jsonl", tmp_path)
     with locked(tmp_path / LOCK):

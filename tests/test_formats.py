@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
-from beamopt.design import Design, load_design
-from beamopt.scene import load_scene
-from tests.export.samples import random_section
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import load_scene
+from tests.beamopt.export.samples import random_section
 from tests.readers.design_file import rasterise
 
 SCENES = bundled_scenes()["gravity"].parent

@@ -15,31 +15,31 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import beamopt.chart.stability
+import beamopt.rod_map.stability
 import femcheck.stability.work
+from beamopt.base.processes import in_process
 from beamopt.bound.certificate import Certificate, certificate
-from beamopt.bound_folder import claimed_for_bound, write_bound
-from beamopt.chart.comparators.shooting import Shooting
+from beamopt.bound.folder import claimed_for_bound, write_bound
+from beamopt.chart.chart import run_chart
 from beamopt.chart.measure import Limits
-from beamopt.chart.run import run_chart
-from beamopt.chart.sampling import Sample, solve_sample
-from beamopt.chart.stability import run_stability
-from beamopt.design import load_design
-from beamopt.export.run import ExportOptions, export_design
-from beamopt.files import write_atomic
-from beamopt.folder import claimed
-from beamopt.optimisation import optimize
-from beamopt.pareto.run import find_front
-from beamopt.refinement import Refinement, refine_design
-from beamopt.refinement_folder import KIND as REFINEMENT
-from beamopt.refinement_folder import write_refined_design
-from beamopt.scene import load_scene
+from beamopt.comparators.shooting import Shooting
+from beamopt.export.export_design import ExportOptions, export_design
+from beamopt.pareto.find_front import find_front
+from beamopt.refine.folder import KIND as REFINEMENT
+from beamopt.refine.folder import write_refined_design
+from beamopt.refine.refine_design import Refinement, refine_design
+from beamopt.rod_map.sampling import Sample, solve_sample
+from beamopt.rod_map.stability import run_stability
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
+from beamopt.storage.result_folder import claimed
+from beamopt.storage.writing import write_atomic
 from beamopt.study.plan import Plan
-from beamopt.study.pool import in_process
-from beamopt.study.run import run_study
-from femcheck.accuracy.run import run_accuracy
-from femcheck.chart.run import run_chart as run_chart_of_models
-from femcheck.regression.run import hold_designs
+from beamopt.study.study import run_study
+from femcheck.accuracy.folder import run_accuracy
+from femcheck.chart.campaign import run_chart as run_chart_of_models
+from femcheck.regression.regression import hold_designs
 from tests.femcheck.made_up import NEO, MadeUp, powers, question_of
 from tests.femcheck.regression.small import saved
 from tests.femcheck.stability.small import make, told_cell, told_row
@@ -179,16 +179,16 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
             write_atomic(path, "a figure")
 
     monkeypatch.setattr("beamopt.plot.style.save_figure", touch)
-    for module in ("beamopt.chart.run", "femcheck.chart.run"):
+    for module in ("beamopt.chart.chart", "femcheck.chart.campaign"):
         monkeypatch.setattr(f"{module}.save_figure", touch)
-    monkeypatch.setattr("femcheck.chart.run.chart_figure", lambda chart: None)
+    monkeypatch.setattr("femcheck.chart.campaign.chart_figure", lambda chart: None)
     monkeypatch.setattr("femcheck.chart.lineup.GRIDS", ((16, 60),))
     monkeypatch.setattr("femcheck.chart.lineup.RODS", {"modes": (4,)})
     monkeypatch.setattr("femcheck.chart.measure.SPENT", 0.0)
     monkeypatch.setattr(femcheck.stability.work, "solve_cell", told_cell)
     monkeypatch.setattr(femcheck.stability.work, "trace_row", told_row)
     monkeypatch.setattr(
-        beamopt.chart.stability,
+        beamopt.rod_map.stability,
         "solve_sample",
         lambda seed, index, methods: sample(seed, index, tuple(methods)),
     )

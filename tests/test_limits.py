@@ -10,13 +10,13 @@ import pytest
 import shapely
 
 import beamopt
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.outline import drawn
 from beamopt.outline.ring import fine_sagitta
-from beamopt.pairs import read_pairs
-from beamopt.pareto.run import find_front
+from beamopt.pareto.find_front import find_front
 from beamopt.section.drawing import RingPiece
-from beamopt.table import read_table
+from beamopt.storage.number_table import read_table
+from beamopt.target.point_table import read_pairs
 
 
 @pytest.mark.parametrize(

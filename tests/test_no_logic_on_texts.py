@@ -29,18 +29,18 @@ ENUMS |= {"Verdict", "Witness"}
 
 NUMBERS = {"published.value"}
 """Values that are numbers: compared with `==` they are no texts."""
-OLD_FILES = {"femcheck/continuation/old_wordings.py", "beamopt/old_wordings.py"}
+OLD_FILES = {"femcheck/continuation/old_wordings.py", "beamopt/storage/old_wordings.py"}
 """Where files of earlier versions are read, which hold texts in place of names."""
 OF_PEOPLE = {
     "beamopt/cli/bound.py": "text",  # an option as it was given
     "beamopt/cli/endings.py": "text",  # put on one line, whatever it says
     "beamopt/cli/tips.py": "text",
-    "beamopt/files.py": "text",  # a cell of a table, defused
-    "beamopt/input_file.py": "text",  # a file
-    "beamopt/overrides.py": "text",
+    "beamopt/storage/writing.py": "text",  # a cell of a table, defused
+    "beamopt/storage/input_file.py": "text",  # a file
+    "beamopt/scene/overrides.py": "text",
     "beamopt/pareto/scores.py": "text",
-    "beamopt/scene_text.py": "text",
-    "beamopt/table.py": "text",
+    "beamopt/scene/toml_text.py": "text",
+    "beamopt/storage/number_table.py": "text",
     "femcheck/cli/accuracy.py": "text",
     "femcheck/cli/chart.py": "text",
     "femcheck/cli/request.py": "text",

@@ -16,8 +16,8 @@ from pydantic import BaseModel
 
 import beamopt
 import femcheck
-from beamopt.evolve.algorithm import Individual
-from beamopt.model import Model
+from beamopt.search.algorithm import Individual
+from beamopt.storage.checked_keys import Model
 from femcheck.accuracy.ending import Tried
 from femcheck.check.comparison import Tips
 from femcheck.continuation.ended import Ended

@@ -12,12 +12,12 @@ from typer.main import get_command
 import beamopt.cli.application
 import femcheck.cli.application
 import femcheck.cli.subjects
-import femcheck.picture
-from beamopt.study.pool import in_process
+import femcheck.solved.picture
+from beamopt.base.processes import in_process
 from femcheck.chart import lineup
-from femcheck.chart.run import run_chart
-from femcheck.check.run import check_design
-from femcheck.prediction.run import predict_design
+from femcheck.chart.campaign import run_chart
+from femcheck.check.check_design import check_design
+from femcheck.prediction.predict_design import predict_design
 from tests.femcheck.check.small import Coarse, design_of, three_circles
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -109,7 +109,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     design.save(folder / "run" / "best.json")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
         patch.setattr(femcheck.cli.subjects, "Subject", Coarse)
         patch.setattr(lineup, "GRIDS", ((16, 60), (32, 120)))
         for judged in (check_design, predict_design, run_chart):

@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.chart.cases import Kind as LoadKind
-from beamopt.chart.cases import case_of
-from beamopt.chart.journal import Journal as RodJournal
-from beamopt.chart.sampling import Row, Sample
-from beamopt.chart.verdict import Verdict, Witness
+from beamopt.base.errors import InputError
 from beamopt.cli.refine import _check_ended
-from beamopt.errors import InputError
-from beamopt.old_wordings import OLD_STOP_REASONS
-from beamopt.optimisation import optimize
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
-from beamopt.scene import load_scene
-from femcheck.accuracy.run import run_accuracy
+from beamopt.rod_map.cases import Kind as LoadKind
+from beamopt.rod_map.cases import case_of
+from beamopt.rod_map.journal import Journal as RodJournal
+from beamopt.rod_map.sampling import Row, Sample
+from beamopt.rod_map.verdict import Verdict, Witness
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
+from beamopt.storage.old_wordings import OLD_STOP_REASONS
+from femcheck.accuracy.folder import run_accuracy
 from femcheck.chart.kept import read_chart
 from femcheck.chart.lineup import mark_of
 from femcheck.chart.measure import Measured, is_final, read, written
@@ -39,7 +39,7 @@ from femcheck.regression.held import LADDER, is_late
 from femcheck.regression.held_design import find_design
 from femcheck.regression.measure import Measured as MeasuredRungs
 from femcheck.regression.moved import compare
-from femcheck.regression.run import regress
+from femcheck.regression.regression import regress
 from femcheck.report.folders import Kind as FolderKind
 from femcheck.report.run_view import view_of
 from femcheck.report.solid_run import read_solid_run
@@ -214,10 +214,10 @@ def test_a_baseline_holds_whatever_its_statuses_are_called(tmp_path: Path) -> No
 
 def test_a_report_says_the_same_of_a_folder(tmp_path: Path) -> None:
     """Of one that was written before texts were reworded, and of one without names."""
-    from femcheck.check.run import check_design
+    from femcheck.check.check_design import check_design
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("femcheck.picture.draw", lambda *scene: False)
+        patch.setattr("femcheck.solved.picture.draw", lambda *scene: False)
         check_design(small_subject("disc"), tmp_path / "new", quick_options(), pool=here)
     view = view_of(read_solid_run(tmp_path / "new"), "a")
     with reworded():
@@ -287,8 +287,8 @@ def test_only_a_search_that_ended_is_refined(text: str, tmp_path: Path) -> None:
 
 
 def test_old_tables_name_what_there_is() -> None:
-    from beamopt.evolve.stopping import StopReason
     from beamopt.outline.faults import FaultKind
+    from beamopt.search.stopping import StopReason
 
     assert set(OLD_STOP_REASONS.values()) <= set(StopReason.__members__)
     assert set(OLD_FAULTS.values()) <= set(FaultKind.__members__)

@@ -30,7 +30,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "num
 def _caches() -> Path | None:
     """The folder above the kernels of all rooms; None where no folder can be written."""
     given = SETTINGS.CACHE_DIR
-    usual = (Path(__file__).parent / "__pycache__", *_of_user())
+    usual = (Path(__file__).parents[1] / "__pycache__", *_of_user())
     for place in (Path(given),) if given else usual:
         if _can_be_written(place):
             return place

@@ -13,8 +13,8 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
-from beamopt.errors import EndedBySignalError
-from beamopt.provenance import THREAD_SETTINGS
+from beamopt.base.errors import EndedBySignalError
+from beamopt.base.provenance import THREAD_SETTINGS
 
 __all__ = ["InProcess", "in_process", "processes"]
 

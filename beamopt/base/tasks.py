@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
-from beamopt.errors import NotComputedError
+from beamopt.base.errors import NotComputedError
 
 __all__ = ["Tasks", "Work", "check_none_lost", "lost_errors", "solve_all"]
 

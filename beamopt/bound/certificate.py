@@ -14,8 +14,8 @@ from beamopt.bound.ring_bound import RingBound, ring_bound
 from beamopt.bound.wanted import Wanted, wanted_of
 from beamopt.bound.work import MOST_WORK, Progress, Work
 from beamopt.rod.ladder import Rung
-from beamopt.scene import Scene
-from beamopt.target import Target
+from beamopt.scene.scene import Scene
+from beamopt.target.target import Target
 
 __all__ = ["BoundStatus", "Certificate", "Progress", "certificate", "quick_certificate"]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import arc_tip_jacobian, arc_tips
 
 __all__ = ["ArcFit"]

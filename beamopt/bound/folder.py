@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import provenance
 from beamopt.bound.certificate import Certificate
 from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
-from beamopt.errors import InputError
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.input_file import read_json
-from beamopt.provenance import provenance
-from beamopt.scene import Scene
-from beamopt.target import Target
+from beamopt.scene.scene import Scene
+from beamopt.storage.input_file import read_json
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import csv_text, json_text, write_atomic
+from beamopt.target.target import Target
 
 __all__ = ["bound_numbers", "bound_summary", "claimed_for_bound", "write_bound"]
 

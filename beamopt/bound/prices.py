@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.bound.cells import Box, RayMinimum
 from beamopt.bound.rays import RayBound, RayParts
 from beamopt.bound.wanted import Wanted

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.bound.cells import Box, RayMinimum, RaySum, ray_minimum
 from beamopt.bound.wanted import Wanted
 from beamopt.bound.work import Work

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.bound.polytope import Cuts, least_squares_within, nearest_point
 from beamopt.bound.ring import NUMBERS, RingMoments, ring_response
 from beamopt.bound.wanted import Wanted

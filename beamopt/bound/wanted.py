@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.ladder import RodModel
-from beamopt.target import Target
+from beamopt.target.target import Target
 
 __all__ = ["Wanted", "rows_of", "wanted_of"]
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from beamopt.base.provenance import provenance, thread_settings
 from beamopt.chart.measure import (
     Limits,
     Measured,
@@ -15,16 +16,15 @@ from beamopt.chart.measure import (
     measure_rungs,
     reference_of,
 )
-from beamopt.chart.methods import all_methods
-from beamopt.chart.workload import Workload, workload_of
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
+from beamopt.comparators.methods import all_methods
+from beamopt.comparators.workload import Workload, workload_of
 from beamopt.plot.error_chart import Line, error_figure
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance, thread_settings
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.solution import Method
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import csv_text, json_text, write_atomic
 
 __all__ = ["Chart", "run_chart"]
 

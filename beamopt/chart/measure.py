@@ -10,10 +10,10 @@ from time import perf_counter
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.methods import limited
-from beamopt.chart.workload import Workload
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.comparators.methods import limited
+from beamopt.comparators.workload import Workload
 from beamopt.rod.ladder import Rung
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.pressure_tree import parents_on_grid

@@ -13,8 +13,8 @@ __all__ = ["main", "prepare", "run_and_leave"]
 
 def prepare() -> None:
     """Pin threads before numpy is loaded, let any terminal take any text, and heed signals."""
+    from beamopt.base.provenance import THREAD_SETTINGS
     from beamopt.cli.signals import heed_signals
-    from beamopt.provenance import THREAD_SETTINGS
 
     for name in THREAD_SETTINGS:  # small matrices gain nothing from threads
         os.environ.setdefault(name, "1")

@@ -11,28 +11,28 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.bound.certificate import BoundStatus, Certificate, certificate
+from beamopt.bound.folder import claimed_for_bound, write_bound
 from beamopt.bound.rays import RayBound
 from beamopt.bound.response import ResponseBound
 from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.bound.work import MOST_WORK
-from beamopt.bound_folder import claimed_for_bound, write_bound
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, work_progress
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.input_file import parse_toml
-from beamopt.model import parse
-from beamopt.overrides import overridden
-from beamopt.scene import Pressures, Scene, load_scene
-from beamopt.scene_text import scene_text
-from beamopt.table import Table, read_table
-from beamopt.target import ONLY_OF_POINTS, SAME_PRESSURE, Target
-from beamopt.target_choice import TargetChoice
-from beamopt.workspace import COLUMNS, pressure_grid
+from beamopt.scene.design import load_design
+from beamopt.scene.overrides import overridden
+from beamopt.scene.scene import Pressures, Scene, load_scene
+from beamopt.scene.target_keys import TargetChoice
+from beamopt.scene.toml_text import scene_text
+from beamopt.storage.checked_keys import parse
+from beamopt.storage.input_file import parse_toml
+from beamopt.storage.number_table import Table, read_table
+from beamopt.target.target import ONLY_OF_POINTS, SAME_PRESSURE, Target
+from beamopt.target.workspace import COLUMNS, pressure_grid
 
 __all__ = ["bound_command", "gap_text"]
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from rich.table import Table
 
+from beamopt.chart.chart import Chart, run_chart
 from beamopt.chart.measure import Measured
-from beamopt.chart.methods import all_methods
-from beamopt.chart.run import Chart, run_chart
 from beamopt.cli.progress import console, progress_bar
-from beamopt.scene import load_scene
+from beamopt.comparators.methods import all_methods
+from beamopt.scene.scene import load_scene
 
 __all__ = ["chart_command"]
 

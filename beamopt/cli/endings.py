@@ -10,9 +10,9 @@ from concurrent.futures import BrokenExecutor
 
 import typer
 
+from beamopt.base.errors import InputError, NoEquilibriumError, NotComputedError
 from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.signals import INTERRUPTED, exit_code, name_of_end
-from beamopt.errors import InputError, NoEquilibriumError, NotComputedError
 from beamopt.rod.status import RodStatus
 
 __all__ = ["finish"]

@@ -7,8 +7,8 @@ from pathlib import Path
 import typer
 
 from beamopt.cli.progress import console
-from beamopt.export.run import ExportOptions, export_design
-from beamopt.named import named_design
+from beamopt.export.export_design import ExportOptions, export_design
+from beamopt.scene.named import named_design
 
 __all__ = ["export_command"]
 

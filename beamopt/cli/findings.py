@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import typer
 
-from beamopt.design import Design
 from beamopt.outline.faults import summaries
+from beamopt.scene.design import Design
 
 __all__ = ["say_findings"]
 

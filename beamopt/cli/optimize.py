@@ -15,16 +15,16 @@ from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
-from beamopt.design import load_design
-from beamopt.evolve.algorithm import Generation
-from beamopt.evolve.stopping import StopReason
-from beamopt.folder import design_file
-from beamopt.judge import Status
-from beamopt.optimisation import optimize
+from beamopt.judge.judge import Status
 from beamopt.reach.reach import TOLERANCE
 from beamopt.refine.refine import StageRecord
-from beamopt.result import EarlierRefinement, Optimisation
-from beamopt.scene import load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
+from beamopt.search.algorithm import Generation
+from beamopt.search.optimize import optimize
+from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.stopping import StopReason
+from beamopt.storage.result_folder import design_file
 
 __all__ = ["optimize_command"]
 

@@ -9,17 +9,17 @@ from pathlib import Path
 
 import typer
 
+from beamopt.base.errors import InputError
 from beamopt.cli.bound import gap_text
 from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
+from beamopt.pareto.find_front import find_front
 from beamopt.pareto.front import Front
-from beamopt.pareto.run import find_front
 from beamopt.pareto.scores import BEST, chosen_objectives
 from beamopt.pareto.search import FrontRecord
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.stopping import StopReason
 
 __all__ = ["pareto_command"]
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import typer
 from rich.table import Table
 
+from beamopt.base.errors import InputError
 from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.errors import InputError
-from beamopt.named import named_design
+from beamopt.judge.answer_tables import paths_csv
 from beamopt.reach.reach import Reach, ReachStatus, reach
-from beamopt.result_tables import paths_csv
-from beamopt.trajectory import read_path
+from beamopt.scene.named import named_design
+from beamopt.target.trajectory import read_path
 
 __all__ = ["reach_command"]
 

@@ -8,24 +8,24 @@ from pathlib import Path
 
 import typer
 
+from beamopt.base.errors import InputError
 from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.cli.bound import gap_text
 from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
-from beamopt.folder import claimed
-from beamopt.input_file import read_json
-from beamopt.named import is_scene, named_design
-from beamopt.old_wordings import OLD_STOP_REASONS
-from beamopt.optimisation import optimize
+from beamopt.refine.folder import KIND, write_refined_design
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
-from beamopt.refinement import Refinement, refine_design
-from beamopt.refinement_folder import KIND, write_refined_design
-from beamopt.result import EarlierRefinement
-from beamopt.scene import Scene, load_scene
+from beamopt.refine.refine_design import Refinement, refine_design
+from beamopt.scene.design import load_design
+from beamopt.scene.named import is_scene, named_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.optimize import optimize
+from beamopt.search.result import EarlierRefinement
+from beamopt.search.stopping import StopReason
+from beamopt.storage.input_file import read_json
+from beamopt.storage.old_wordings import OLD_STOP_REASONS
+from beamopt.storage.result_folder import claimed
 
 __all__ = ["refine_command", "refinement_lines", "stages_shown"]
 

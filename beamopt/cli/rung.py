@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.climb import Climb
-from beamopt.named import is_scene, named_design
 from beamopt.rod.ladder import Rung
-from beamopt.scene import load_scene
+from beamopt.scene.named import is_scene, named_design
+from beamopt.scene.rod_choice import Climb
+from beamopt.scene.scene import load_scene
 
 __all__ = ["rung_command"]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-from beamopt.bundled import bundled_scenes
+from beamopt.base.errors import InputError
 from beamopt.cli.progress import console
-from beamopt.errors import InputError
-from beamopt.files import write_atomic
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.storage.writing import write_atomic
 
 __all__ = ["init_command", "scenes_command"]
 
@@ -22,8 +22,8 @@ def scenes_command() -> None:
 
 def init_command(file: Path, start: str | None) -> None:
     """Write a scene with every key, its unit and what it may hold."""
-    from beamopt.scene import Scene, load_scene
-    from beamopt.scene_text import scene_text
+    from beamopt.scene.scene import Scene, load_scene
+    from beamopt.scene.toml_text import scene_text
 
     if file.exists():
         raise InputError(file, "", None, "exists already; name a new file")

@@ -8,18 +8,18 @@ import numpy as np
 from rich.style import Style
 from rich.text import Text
 
+from beamopt.base.errors import InputError
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.design import Design
-from beamopt.errors import InputError
-from beamopt.files import check_replaceable
-from beamopt.named import is_scene, named_design
 from beamopt.plot.figures import design_figure, design_title
 from beamopt.plot.section import OUTSIDE, section_pixels
 from beamopt.plot.style import TYPE_COLOURS, save_figure
-from beamopt.scene import load_scene
+from beamopt.scene.design import Design
+from beamopt.scene.named import is_scene, named_design
+from beamopt.scene.scene import load_scene
 from beamopt.section.cross_section import CrossSection
-from beamopt.target import Target, read_target
+from beamopt.storage.writing import check_replaceable
+from beamopt.target.target import Target, read_target
 
 __all__ = ["show_command"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 
-from beamopt.errors import EndedBySignalError
+from beamopt.base.errors import EndedBySignalError
 
 __all__ = ["INTERRUPTED", "exit_code", "heed_signals", "name_of_end"]
 

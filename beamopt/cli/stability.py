@@ -7,10 +7,10 @@ from time import perf_counter
 
 from rich.table import Table
 
-from beamopt.chart.sampling import Sample
-from beamopt.chart.stability import run_stability
-from beamopt.chart.summary import rates_of
 from beamopt.cli.progress import console, progress_bar
+from beamopt.rod_map.sampling import Sample
+from beamopt.rod_map.stability import run_stability
+from beamopt.rod_map.summary import rates_of
 
 __all__ = ["stability_command"]
 

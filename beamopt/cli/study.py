@@ -10,7 +10,7 @@ from rich.table import Table
 
 from beamopt.cli.progress import console, progress_bar
 from beamopt.study.plan import Plan
-from beamopt.study.run import run_study
+from beamopt.study.study import run_study
 from beamopt.study.table import SUMMARIES, Outcome, targets_of, title
 
 __all__ = ["refinement_table", "study_command"]

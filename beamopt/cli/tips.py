@@ -12,15 +12,15 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError, NoEquilibriumError
 from beamopt.cli.exit_codes import ExitCode, end_with, joined
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
-from beamopt.errors import InputError, NoEquilibriumError
-from beamopt.named import named_design
 from beamopt.rod.ladder import Tips
 from beamopt.rod.status import RodStatus
-from beamopt.workspace import pressure_grid, tips_csv
+from beamopt.scene.named import named_design
+from beamopt.target.workspace import pressure_grid, tips_csv
 
 __all__ = ["tips_command"]
 

@@ -12,11 +12,11 @@ import numpy as np
 from scipy.integrate import solve_bvp
 from scipy.interpolate import PPoly
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.following import Attempt, not_representable, solve_cases
-from beamopt.chart.comparators.growing import under
-from beamopt.chart.comparators.loaded import Loaded, at_rest, loaded_rod
-from beamopt.chart.comparators.quaternion_form import (
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.following import Attempt, not_representable, solve_cases
+from beamopt.comparators.growing import under
+from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
+from beamopt.comparators.quaternion_form import (
     arcs_at_rest,
     boundary,
     jacobians,

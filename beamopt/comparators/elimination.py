@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
 
 __all__ = ["assign", "eliminate", "solve", "substitute"]
 

@@ -10,7 +10,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus

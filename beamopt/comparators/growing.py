@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.se3 import rotation, rotation_vector
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.se3 import rotation, rotation_vector
 
 __all__ = ["under"]
 

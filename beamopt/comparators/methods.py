@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.chart.comparators.collocation import Collocation
-from beamopt.chart.comparators.multiple_shooting import MultipleShooting
-from beamopt.chart.comparators.shooting import Shooting
-from beamopt.chart.comparators.sweep import Stepper
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.comparators.collocation import Collocation
+from beamopt.comparators.multiple_shooting import MultipleShooting
+from beamopt.comparators.shooting import Shooting
+from beamopt.comparators.sweep import Stepper
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.modes import StrainModes

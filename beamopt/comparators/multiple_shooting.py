@@ -9,15 +9,16 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.elimination import assign, eliminate, solve, substitute
-from beamopt.chart.comparators.following import Attempt, not_representable, solve_cases
-from beamopt.chart.comparators.growing import under
-from beamopt.chart.comparators.loaded import Loaded, at_rest, loaded_rod
-from beamopt.chart.comparators.se3 import rotation_vector
-from beamopt.chart.comparators.sections import Sections, draw, largest_wrench, move, take
-from beamopt.chart.comparators.shooting import HALVINGS, ITERATIONS, stations_of
-from beamopt.chart.comparators.sweep import (
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.elimination import assign, eliminate, solve, substitute
+from beamopt.comparators.following import Attempt, not_representable, solve_cases
+from beamopt.comparators.growing import under
+from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
+from beamopt.comparators.se3 import rotation_vector
+from beamopt.comparators.sections import Sections, draw, largest_wrench, move, take
+from beamopt.comparators.shooting import HALVINGS, ITERATIONS, stations_of
+from beamopt.comparators.sweep import (
     WORK,
     Stepper,
     advance,
@@ -26,7 +27,6 @@ from beamopt.chart.comparators.sweep import (
     segments_of,
     wrench_size,
 )
-from beamopt.compiled import compiled
 from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus

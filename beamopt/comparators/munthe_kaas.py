@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.elimination import assign
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.rates import cross, strains_and_loads, times
-from beamopt.chart.comparators.se3 import add_bracket, exponential
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.elimination import assign
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.rates import cross, strains_and_loads, times
+from beamopt.comparators.se3 import add_bracket, exponential
 
 __all__ = ["munthe_kaas_step"]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.runge_kutta import slope_of, turned_by
-from beamopt.chart.comparators.se3 import exponential
-from beamopt.chart.comparators.sweep import WORK, leftover, pass_load
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.runge_kutta import slope_of, turned_by
+from beamopt.comparators.se3 import exponential
+from beamopt.comparators.sweep import WORK, leftover, pass_load
 
 __all__ = ["arcs_at_rest", "boundary", "jacobians", "rotation_of", "slopes"]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.loaded import Loaded
 
 __all__ = ["cross", "strains_and_loads", "times"]
 

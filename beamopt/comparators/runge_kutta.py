@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.elimination import assign
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.rates import cross, strains_and_loads, times
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.elimination import assign
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.rates import cross, strains_and_loads, times
 
 __all__ = ["runge_kutta_step", "slope_of", "turned_by"]
 

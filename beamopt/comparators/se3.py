@@ -6,9 +6,9 @@ from math import atan2, sin, sqrt
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.rates import cross
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.rates import cross
 
 __all__ = ["add_bracket", "exponential", "rotation", "rotation_vector"]
 

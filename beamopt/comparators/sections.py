@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.elimination import assign
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.se3 import rotation
-from beamopt.chart.comparators.sweep import WORK, advance
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.elimination import assign
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.se3 import rotation
+from beamopt.comparators.sweep import WORK, advance
 
 __all__ = ["Sections", "draw", "largest_wrench", "move", "take"]
 

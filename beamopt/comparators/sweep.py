@@ -8,13 +8,13 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded
-from beamopt.chart.comparators.munthe_kaas import munthe_kaas_step
-from beamopt.chart.comparators.rates import cross, times
-from beamopt.chart.comparators.runge_kutta import runge_kutta_step
-from beamopt.chart.comparators.se3 import rotation_vector
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
+from beamopt.comparators.loaded import Loaded
+from beamopt.comparators.munthe_kaas import munthe_kaas_step
+from beamopt.comparators.rates import cross, times
+from beamopt.comparators.runge_kutta import runge_kutta_step
+from beamopt.comparators.se3 import rotation_vector
 
 __all__ = [
     "WORK",

@@ -7,15 +7,15 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import load_design
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.rod.rod import Rod
-from beamopt.scene import Scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.saint_venant import section_saint_venant
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 
 __all__ = ["Workload", "random_section", "workload_of"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.export.faces import Contour, Face, SectionFaces
 from beamopt.outline.ring import circle
 from beamopt.section.grid import PolarGrid

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.design import Design
 from beamopt.export.faces import Contour, Face, SectionFaces, polygon_of
+from beamopt.scene.design import Design
 from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.export.drawing import SCALE_BAR, Drawing
 from beamopt.export.faces import Contour
 from beamopt.export.step import is_installed

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from beamopt.design import Design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import provenance
 from beamopt.export.bodies import BASE_THICKNESS, Solid, body_solids, mould_solids
 from beamopt.export.drawing import Drawing, section_drawing
 from beamopt.export.dxf import NEEDS_EZDXF, dxf_bytes, require_ezdxf
@@ -16,12 +16,12 @@ from beamopt.export.record import SCHEMA, export_record, notes_on
 from beamopt.export.step import NEEDS_GMSH, is_installed, require_gmsh, step_text
 from beamopt.export.stl import stl_bytes
 from beamopt.export.svg import svg_text
-from beamopt.files import json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.input_file import read_json
 from beamopt.outline.build import build_outline
 from beamopt.outline.ring import usual_sagitta
-from beamopt.provenance import provenance
+from beamopt.scene.design import Design
+from beamopt.storage.input_file import read_json
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import json_text, write_atomic
 
 __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
 

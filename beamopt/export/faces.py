@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.outline.faults import FaultKind
 from beamopt.outline.green import loop_integrals
 from beamopt.outline.outline import Outline

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from beamopt.design import Design
 from beamopt.export.bodies import Solid
 from beamopt.export.drawing import Drawing, is_thinner
 from beamopt.export.faces import SectionFaces
 from beamopt.outline.faults import Fault, summaries
+from beamopt.scene.design import Design
 from beamopt.section.feature_points import SUPPLIES
 
 __all__ = ["SCHEMA", "export_record", "notes_on"]

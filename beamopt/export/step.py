@@ -11,10 +11,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.export.bodies import Solid
 from beamopt.export.faces import Contour
-from beamopt.scratch import scratch_folder
+from beamopt.storage.scratch import scratch_folder
 
 __all__ = ["NEEDS_GMSH", "is_installed", "require_gmsh", "step_text"]
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.export.bodies import Solid
 from beamopt.export.faces import Contour, polygon_of
 

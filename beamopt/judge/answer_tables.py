@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.answers import Answers
-from beamopt.files import csv_text
+from beamopt.judge.answers import Answers
 from beamopt.reach.reach import Reach
+from beamopt.storage.writing import csv_text
+from beamopt.target.aim import Aim
 
 __all__ = ["paths_csv", "tips_table_csv"]
 

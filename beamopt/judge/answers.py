@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.reach.reach import Reach, arcs_are_linear, reach, reach_of_arcs
 from beamopt.rod.arc import arc_tip_directions, arc_tips
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.section.moments import Moments
+from beamopt.target.aim import Aim
 
 __all__ = ["Answers", "Question"]
 

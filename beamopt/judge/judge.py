@@ -13,19 +13,19 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.aim import Aim
-from beamopt.answers import Answers, Question
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.making import FREE, MakingRules
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.judge.answers import Answers, Question
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
+from beamopt.scene.manufacturing_keys import FREE, MakingRules
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes, phenotypes
 from beamopt.section.saint_venant import section_saint_venant
 from beamopt.section.seal import UNSEALED, SealRules
-from beamopt.workspace import pressure_grid
+from beamopt.target.aim import Aim
+from beamopt.target.workspace import pressure_grid
 
 __all__ = ["Judge", "Status", "Verdict", "in_parts", "judge_all"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.cells import regions as cell_regions
 from beamopt.outline.cells import territories
 from beamopt.outline.drawn import drawing_faults, drawn_regions, solid

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints
 
 if TYPE_CHECKING:

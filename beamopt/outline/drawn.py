@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.cells import LATTICE
 from beamopt.outline.faults import Fault, FaultKind
 from beamopt.outline.ring import arc, circle, fine_sagitta, ring_polygon

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.faults import Fault, Severity
 from beamopt.outline.green import loop_integrals
 from beamopt.section.feature_points import MATERIAL, SUPPLIES

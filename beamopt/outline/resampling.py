@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 
 __all__ = ["resample"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.rays import thin_places
 from beamopt.outline.ring import fine_sagitta, quad_segs, shrunk_ring
 from beamopt.section.grid import PolarGrid

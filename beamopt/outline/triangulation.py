@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.errors import InputError
 from beamopt.outline.outline import Outline, Piece
 
 if TYPE_CHECKING:

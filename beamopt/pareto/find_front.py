@@ -10,21 +10,21 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from beamopt.base.errors import InputError
 from beamopt.bound.certificate import quick_certificate
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
-from beamopt.evolve.variation import Variation
-from beamopt.folder import claimed
-from beamopt.generation_size import check_generation
-from beamopt.judge import in_parts
+from beamopt.judge.judge import in_parts
 from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
 from beamopt.pareto.scores import Score, scored
 from beamopt.pareto.search import FrontNumbers, FrontRecord, FrontSearch, front_values
-from beamopt.scene import Scene
+from beamopt.scene.generation_size import check_generation
+from beamopt.scene.scene import Scene
+from beamopt.search.stopping import StopReason
+from beamopt.search.variation import Variation
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.timing import Timing
+from beamopt.storage.result_folder import claimed
+from beamopt.storage.timing import Timing
 
 __all__ = ["POPULATION", "find_front"]
 

@@ -6,18 +6,18 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
-from beamopt.bound_folder import bound_summary
-from beamopt.design import Design
-from beamopt.files import csv_text, json_text, write_atomic, write_changed
-from beamopt.folder import FolderKind, clear_leftovers
-from beamopt.judge import Judge, Status
-from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
+from beamopt.base.provenance import provenance
+from beamopt.bound.folder import bound_summary
+from beamopt.judge.judge import Judge, Status
 from beamopt.pareto.front import Front
 from beamopt.pareto.scores import BEST, OBJECTIVES
-from beamopt.provenance import provenance
-from beamopt.scene import Scene
-from beamopt.scene_text import scene_text
-from beamopt.timing import write_times
+from beamopt.scene.design import Design
+from beamopt.scene.scene import Scene
+from beamopt.scene.toml_text import scene_text
+from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
+from beamopt.storage.result_folder import FolderKind, clear_leftovers
+from beamopt.storage.timing import write_times
+from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 
 __all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
 

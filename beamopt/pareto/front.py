@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
+from beamopt.base.brief import Brief
 from beamopt.bound.certificate import Certificate
-from beamopt.brief import Brief
-from beamopt.evolve.stopping import StopReason
-from beamopt.judge import Status
+from beamopt.judge.judge import Status
 from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
-from beamopt.scene import Scene
-from beamopt.timing import Timing
+from beamopt.scene.scene import Scene
+from beamopt.search.stopping import StopReason
+from beamopt.storage.timing import Timing
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -116,8 +116,8 @@ class Front:
 
     def to_frame(self) -> DataFrame:
         """Losses, masses and chambers of the front's designs, as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
         from beamopt.pareto.folder import front_csv
+        from beamopt.storage.frames import frame_of
 
         return frame_of(front_csv(self, self.scene.judge(self.scene.load_target())))
 

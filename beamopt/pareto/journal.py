@@ -8,14 +8,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from beamopt.errors import InputError
-from beamopt.input_file import read_bytes
-from beamopt.judge import Status, Verdict
-from beamopt.line_journal import LineJournal
+from beamopt.base.errors import InputError
+from beamopt.judge.judge import Status, Verdict
 from beamopt.pareto.scores import Score
 from beamopt.pareto.search import FrontSearch
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.storage.input_file import read_bytes
+from beamopt.storage.line_journal import LineJournal
 
 __all__ = ["FrontJournal"]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.judge import Judge, Status, Verdict
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.judge.judge import Judge, Status, Verdict
 from beamopt.section.feature_points import FeaturePoints
 
 __all__ = ["BEST", "OBJECTIVES", "Score", "chosen_objectives", "nondominated", "scored"]

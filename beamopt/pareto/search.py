@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.evolve.variation import Variation
-from beamopt.judge import Status
+from beamopt.base.arrays import FloatArray
+from beamopt.base.random_streams import Purpose, stream
+from beamopt.judge.judge import Status
 from beamopt.pareto.scores import Score, nondominated
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
+from beamopt.search.variation import Variation
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.streams import Purpose, stream
 
 __all__ = ["Candidate", "FrontNumbers", "FrontRecord", "FrontSearch", "front_values"]
 

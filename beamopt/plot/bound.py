@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.style import (
     ASIDE_COLOUR,
     BELOW,
@@ -16,7 +16,7 @@ from beamopt.plot.style import (
     styled,
 )
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
-from beamopt.workspace import Workspace
+from beamopt.target.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import (
     ASIDE_COLOUR,
@@ -22,8 +21,9 @@ from beamopt.plot.style import (
 from beamopt.plot.targets import answered, asked, following
 from beamopt.plot.workspace import draw_diagonal, draw_down, draw_from_above, pressure_handles
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.target import Target
-from beamopt.workspace import Workspace
+from beamopt.scene.design import Design
+from beamopt.target.target import Target
+from beamopt.target.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
+from beamopt.scene.design import Design
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

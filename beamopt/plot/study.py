@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import (
     ASIDE_COLOUR,
@@ -21,7 +20,8 @@ from beamopt.plot.style import (
 )
 from beamopt.plot.targets import answered, asked, following
 from beamopt.plot.workspace import draw_diagonal, draw_from_above
-from beamopt.target import Target
+from beamopt.scene.design import Design
+from beamopt.target.target import Target
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

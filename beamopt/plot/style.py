@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.files import write_atomic
+from beamopt.base.arrays import FloatArray
+from beamopt.storage.writing import write_atomic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

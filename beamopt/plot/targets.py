@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
-from beamopt.errors import NoEquilibriumError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import NoEquilibriumError
 from beamopt.plot.workspace import Dots, Followed
 from beamopt.reach.reach import reach
-from beamopt.target import Target
-from beamopt.workspace import Workspace
+from beamopt.scene.design import Design
+from beamopt.target.aim import Aim
+from beamopt.target.target import Target
+from beamopt.target.workspace import Workspace
 
 __all__ = ["answered", "asked", "following"]
 

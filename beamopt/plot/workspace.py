@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.style import ASIDE_COLOUR, DESIGN_COLOUR, TARGET_COLOUR, pressure_colours
-from beamopt.workspace import Workspace
+from beamopt.target.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.reach.arc_inverse import arc_inverse
 from beamopt.reach.inverse import inverse_by_differences
 from beamopt.rod.ladder import RodModel, Rung, SectionValues

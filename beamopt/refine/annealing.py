@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.judge import Judge
 from beamopt.reach.reach import arcs_are_linear
 from beamopt.refine.arc_loss import ArcAim
 from beamopt.refine.flips import Flips, walk

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import Domain, PolarGrid
 from beamopt.section.neighbours import cell_neighbours, neighbours_of

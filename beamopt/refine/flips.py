@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled, inlined
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled, inlined
 from beamopt.refine.arc_loss import ArcAim, arc_loss
 from beamopt.refine.fragments import Fragments, kinds_of, moments_of_kinds, retyped
 from beamopt.refine.orbits import Orbits

@@ -8,17 +8,17 @@ import os
 from pathlib import Path
 from typing import Any
 
-from beamopt.design import load_design
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import FolderKind, clear_leftovers
-from beamopt.input_file import read_text
-from beamopt.judge import Status, Verdict
-from beamopt.provenance import provenance
-from beamopt.refinement import Refinement
-from beamopt.result import EarlierRefinement
-from beamopt.result_tables import paths_csv, tips_table_csv
-from beamopt.scene import Scene
-from beamopt.target import Target
+from beamopt.base.provenance import provenance
+from beamopt.judge.answer_tables import paths_csv, tips_table_csv
+from beamopt.judge.judge import Status, Verdict
+from beamopt.refine.refine_design import Refinement
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene
+from beamopt.search.result import EarlierRefinement
+from beamopt.storage.input_file import read_text
+from beamopt.storage.result_folder import FolderKind, clear_leftovers
+from beamopt.storage.writing import csv_text, json_text, write_atomic
+from beamopt.target.target import Target
 
 __all__ = [
     "KIND",

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled, inlined
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled, inlined
 from beamopt.section.cell_owners import cell_owners
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid

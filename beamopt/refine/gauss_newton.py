@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.judge import Judge
 from beamopt.refine.edges import moment_slopes
 from beamopt.refine.orbits import Orbits
 from beamopt.refine.sensitivity import moment_sizes, residual_of, residual_slopes

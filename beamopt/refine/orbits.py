@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.section.cell_owners import distinct, first_of_places
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry

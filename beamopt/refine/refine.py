@@ -6,16 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from beamopt.judge import Judge, Verdict
+from beamopt.base.random_streams import Purpose, stream
+from beamopt.judge.judge import Judge, Verdict
 from beamopt.refine.annealing import Schedule, anneal
 from beamopt.refine.gauss_newton import Limits, descend
 from beamopt.refine.orbits import orbits_of, with_cells
 from beamopt.refine.truth import Judged, Truth, View, judged_on
-from beamopt.search_settings import Refining
+from beamopt.scene.search_keys import Refining
 from beamopt.section.cell_owners import distinct
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
-from beamopt.streams import Purpose, stream
 
 __all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine", "rounds_of"]
 

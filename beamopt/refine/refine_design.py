@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from beamopt.design import Design
 from beamopt.refine.refine import Refined, RefineStatus, StageRecord, improved, refine
-from beamopt.scene import Scene
-from beamopt.search_settings import Refining
+from beamopt.scene.design import Design
+from beamopt.scene.scene import Scene
+from beamopt.scene.search_keys import Refining
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.target import Target
+from beamopt.target.target import Target
 
 __all__ = ["Refinement", "refine_design", "refine_points"]
 

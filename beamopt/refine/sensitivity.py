@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.answers import Answers
-from beamopt.arrays import FloatArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.answers import Answers
+from beamopt.judge.judge import Judge
 from beamopt.reach.reach import arcs_are_linear
 from beamopt.refine.truth import Judged, answers_to
 from beamopt.rod.arc import arc_tip_direction_jacobian, arc_tip_jacobian
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
+from beamopt.target.aim import Aim
 
 __all__ = ["moment_sizes", "residual_of", "residual_slopes", "response_slopes"]
 

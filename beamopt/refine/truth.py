@@ -9,14 +9,14 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.answers import Answers
-from beamopt.judge import Judge, Status, Verdict
+from beamopt.judge.answers import Answers
+from beamopt.judge.judge import Judge, Status, Verdict
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import SectionValues
 from beamopt.section.feature_points import SUPPLIES, FeaturePoints
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes
+from beamopt.target.aim import Aim
 
 __all__ = ["Judged", "Truth", "View", "judged_on"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = [
     "arc_centreline",

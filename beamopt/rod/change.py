@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import inlined
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import inlined
 from beamopt.rod.packed import RodArrays, Stations
 from beamopt.rod.rotation import cross3, crossed, local, spatial
 from beamopt.rod.shape import Shape

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 from beamopt.rod.estimate import estimated_error
 from beamopt.rod.newton import DIVERGED, FOUND, newton
 from beamopt.rod.packed import RodArrays, Stations

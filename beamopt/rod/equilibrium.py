@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import Rod

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.balance import reaction_of
 from beamopt.rod.newton import CLOSE, FOUND, UNSTABLE, evaluate, largest_turn, newton
 from beamopt.rod.packed import RodArrays, Stations

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.arc import arc_centreline, arc_tip_directions, arc_tips
 from beamopt.rod.chain import chain_centrelines, chain_tips
 from beamopt.rod.equilibrium import MethodName, solve_rod

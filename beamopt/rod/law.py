@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.moments import Moments
 
 __all__ = ["SectionLaw", "cross", "poissons_ratio", "section_law"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.balance import unknown_count
 from beamopt.rod.direct import read_case, solve_directly
 from beamopt.rod.following import Follower

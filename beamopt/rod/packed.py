@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.rod import Rod
 from beamopt.rod.rotation import GAUSS_3
 

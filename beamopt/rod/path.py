@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.path_system import BEND, MOST_ITERATIONS, PathState, PathSystem
 from beamopt.rod.rod import Rod
 

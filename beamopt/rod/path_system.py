@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.balance import reaction_of, unknown_count
 from beamopt.rod.newton import evaluate, is_stable
 from beamopt.rod.packed import pack, stations_of

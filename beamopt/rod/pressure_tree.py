@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from beamopt.arrays import IndexArray
+from beamopt.base.arrays import IndexArray
 
 __all__ = ["parents_on_grid"]
 

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.moments import Moments
 
 __all__ = ["LinearResponse", "Response", "linear_response"]

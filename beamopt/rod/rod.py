@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.law import SectionLaw
 
 __all__ = ["STRAIGHT", "Base", "LineLoad", "PointLoad", "Rod", "Segment", "Tip"]

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled, inlined
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled, inlined
 from beamopt.rod.packed import RodArrays, Stations
 from beamopt.rod.rotation import (
     cross3,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled, inlined
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled, inlined
 from beamopt.rod.change import Change, bend, move_forces, move_positions
 from beamopt.rod.packed import RodArrays, Stations
 from beamopt.rod.rotation import Vector, cross3, crossed, local

@@ -9,11 +9,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.workload import random_section
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.workload import random_section
 from beamopt.rod.ladder import Loads, RodModel, SectionValues
 from beamopt.rod.rod import LineLoad, PointLoad, Rod
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.scene import Scene, load_scene
 
 __all__ = ["SLENDERNESSES", "Case", "Kind", "LoadedSection", "case_of", "sizes_of"]
 

@@ -6,11 +6,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from beamopt.chart.cases import case_of
-from beamopt.chart.sampling import Row, Sample
-from beamopt.chart.verdict import Verdict, Witness
-from beamopt.line_journal import LineJournal
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.cases import case_of
+from beamopt.rod_map.sampling import Row, Sample
+from beamopt.rod_map.verdict import Verdict, Witness
+from beamopt.storage.line_journal import LineJournal
 
 __all__ = ["Journal"]
 

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.chart.cases import SLENDERNESSES, Kind, sizes_of
-from beamopt.chart.reading import reading
-from beamopt.chart.sampling import LIMIT, Row, Sample
-from beamopt.chart.summary import commonest, rates_of
-from beamopt.chart.verdict import Verdict
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.base.provenance import provenance
 from beamopt.plot.stability_map import Cell, Panel, map_figure
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance
+from beamopt.rod_map.cases import SLENDERNESSES, Kind, sizes_of
+from beamopt.rod_map.reading import reading
+from beamopt.rod_map.sampling import LIMIT, Row, Sample
+from beamopt.rod_map.summary import commonest, rates_of
+from beamopt.rod_map.verdict import Verdict
+from beamopt.storage.writing import csv_text, json_text, write_atomic
 
 __all__ = ["NAMES", "write_map"]
 

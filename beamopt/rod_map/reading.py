@@ -8,11 +8,11 @@ from textwrap import fill
 
 import numpy as np
 
-from beamopt.chart.cases import Kind, sizes_of
-from beamopt.chart.sampling import ADAPTIVE, LIMIT, Row, Sample
-from beamopt.chart.summary import Rates, rates_of
-from beamopt.chart.verdict import NEAR, RIGHT, Verdict, Witness
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.cases import Kind, sizes_of
+from beamopt.rod_map.sampling import ADAPTIVE, LIMIT, Row, Sample
+from beamopt.rod_map.summary import Rates, rates_of
+from beamopt.rod_map.verdict import NEAR, RIGHT, Verdict, Witness
 
 __all__ = ["reading"]
 

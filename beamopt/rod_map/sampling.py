@@ -9,12 +9,12 @@ from time import perf_counter, thread_time
 
 import numpy as np
 
-from beamopt.chart.cases import Case, Kind, LoadedSection, case_of
-from beamopt.chart.methods import DEFAULT_RESOLUTIONS, all_methods, limited
-from beamopt.chart.truth import true_equilibrium
-from beamopt.chart.verdict import Answer, Truth, Verdict, Witness, judged
+from beamopt.comparators.methods import DEFAULT_RESOLUTIONS, all_methods, limited
 from beamopt.rod.solution import Method
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.cases import Case, Kind, LoadedSection, case_of
+from beamopt.rod_map.truth import true_equilibrium
+from beamopt.rod_map.verdict import Answer, Truth, Verdict, Witness, judged
 
 __all__ = ["ADAPTIVE", "LIMIT", "METHODS", "Row", "Sample", "solve_sample"]
 

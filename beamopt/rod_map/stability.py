@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from beamopt.chart.journal import Journal
-from beamopt.chart.map_report import NAMES, write_map
-from beamopt.chart.sampling import METHODS, Sample, solve_sample
-from beamopt.errors import InputError
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.study.pool import in_process, processes
-from beamopt.study.work import Tasks, check_none_lost, solve_all
+from beamopt.base.errors import InputError
+from beamopt.base.processes import in_process, processes
+from beamopt.base.tasks import Tasks, check_none_lost, solve_all
+from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.map_report import NAMES, write_map
+from beamopt.rod_map.sampling import METHODS, Sample, solve_sample
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
 
 __all__ = ["run_stability"]
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.chart.sampling import Row
-from beamopt.chart.verdict import Verdict
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.sampling import Row
+from beamopt.rod_map.verdict import Verdict
 
 __all__ = ["Rates", "commonest", "median_seconds", "rates_of"]
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.verdict import Truth, Witness, apart
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.verdict import Truth, Witness, apart
 
 __all__ = ["compared", "true_equilibrium"]
 

@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.status import RodStatus
 
 __all__ = ["NEAR", "RIGHT", "Answer", "Truth", "Verdict", "Witness", "apart", "judged"]

@@ -11,14 +11,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.free_values import FreeTable
-from beamopt.model import Model, Number, quantity
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.rod.ladder import Loads, Piece, RodModel, Rung, SectionValues
 from beamopt.rod.law import poissons_ratio
 from beamopt.rod.response import linear_response
 from beamopt.rod.rod import LineLoad, PointLoad
+from beamopt.storage.checked_keys import Model, Number, quantity
+from beamopt.storage.free_values import FreeTable
 
 __all__ = ["RUNGS", "Actuator", "Loading", "RodRules", "SegmentChoice", "Vector", "rod_model"]
 

@@ -9,16 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.actuator import Actuator, Loading, RodRules, rod_model
-from beamopt.arrays import FloatArray
-from beamopt.chambers import Points, lost_in_raster
-from beamopt.climb import Climb, climb
-from beamopt.design_keys import DesignKeys
-from beamopt.errors import InputError, NoEquilibriumError
-from beamopt.files import json_text, write_atomic
-from beamopt.grid_keys import Grid, Levels, WallElements
-from beamopt.input_file import read_json
-from beamopt.model import parse
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError, NoEquilibriumError
 from beamopt.outline.faults import Fault, FaultKind, worst_first
 from beamopt.outline.outline import Outline
 from beamopt.outline.saint_venant import outline_saint_venant
@@ -26,13 +18,21 @@ from beamopt.rod.ladder import RodModel, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.rod.status import RodStatus
-from beamopt.seal import Seal
+from beamopt.scene.actuator import Actuator, Loading, RodRules, rod_model
+from beamopt.scene.design_keys import DesignKeys
+from beamopt.scene.drawn_chambers import Points, lost_in_raster
+from beamopt.scene.grid_keys import Grid, Levels, WallElements
+from beamopt.scene.rod_choice import Climb, climb
+from beamopt.scene.seal_keys import Seal
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant, section_saint_venant
-from beamopt.workspace import Workspace, pressure_grid
+from beamopt.storage.checked_keys import parse
+from beamopt.storage.input_file import read_json
+from beamopt.storage.writing import json_text, write_atomic
+from beamopt.target.workspace import Workspace, pressure_grid
 
 __all__ = ["Design", "Grid", "Levels", "WallElements", "load_design", "section_values"]
 
@@ -257,7 +257,7 @@ def load_design(path: str | Path) -> Design:
     >>> beamopt.load_design(str(file)).seal.skin
     1.0
     """
-    from beamopt.segment_files import with_sections
+    from beamopt.scene.segment_files import with_sections
 
     file = Path(path)
     design = read_design(file)

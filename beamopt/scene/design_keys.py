@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from beamopt.actuator import Actuator, Loading, RodRules
-from beamopt.chambers import DrawnChamber, Points, check_drawing
-from beamopt.free_values import FreeTable
-from beamopt.grid_keys import Grid, Levels, WallElements
-from beamopt.model import Model, quantity
-from beamopt.seal import Seal
+from beamopt.scene.actuator import Actuator, Loading, RodRules
+from beamopt.scene.drawn_chambers import DrawnChamber, Points, check_drawing
+from beamopt.scene.grid_keys import Grid, Levels, WallElements
+from beamopt.scene.seal_keys import Seal
+from beamopt.storage.checked_keys import Model, quantity
+from beamopt.storage.free_values import FreeTable
 
 __all__ = ["DesignKeys"]
 

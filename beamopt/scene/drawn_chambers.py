@@ -7,13 +7,13 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from beamopt.errors import InputError
-from beamopt.model import Count, Model, Number, quantity
+from beamopt.base.errors import InputError
 from beamopt.outline.faults import Fault, FaultKind
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
+from beamopt.storage.checked_keys import Count, Model, Number, quantity
 
 __all__ = ["DrawnChamber", "Points", "check_drawing", "lost_in_raster"]
 

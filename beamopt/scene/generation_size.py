@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 
 __all__ = ["check_generation"]
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, model_validator
 
-from beamopt.model import Count, Model, Number, quantity
 from beamopt.section.grid import PolarGrid
+from beamopt.storage.checked_keys import Count, Model, Number, quantity
 
 __all__ = ["Grid", "Levels", "WallElements"]
 

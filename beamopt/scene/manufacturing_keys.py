@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from beamopt.arrays import FloatArray
-from beamopt.model import Model, Number, quantity
+from beamopt.base.arrays import FloatArray
 from beamopt.section.grid import PolarGrid
 from beamopt.section.phenotype import Phenotypes
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
+from beamopt.storage.checked_keys import Model, Number, quantity
 
 __all__ = ["FREE", "Making", "MakingRules"]
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
-from beamopt.folder import design_file
-from beamopt.scene import Scene, load_scene
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.storage.result_folder import design_file
 
 __all__ = ["design_of_scene", "is_scene", "name_of", "named_design"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from beamopt.errors import InputError
-from beamopt.input_file import MOST_KEY_PARTS, parse_toml
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import MOST_KEY_PARTS, parse_toml
 
 __all__ = ["overridden"]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.actuator import RUNGS, RodRules
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.workspace import pressure_grid
+from beamopt.scene.actuator import RUNGS, RodRules
+from beamopt.target.workspace import pressure_grid
 
 __all__ = ["Climb", "climb"]
 

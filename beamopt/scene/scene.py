@@ -10,11 +10,13 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from beamopt.actuator import Actuator, Loading, RodRules, rod_model
-from beamopt.brief import Brief
-from beamopt.bundled import bundled_scenes
-from beamopt.climb import Climb, climb
-from beamopt.design import (
+from beamopt.base.brief import Brief
+from beamopt.base.errors import InputError, NoEquilibriumError
+from beamopt.judge.judge import Judge
+from beamopt.rod.ladder import RodModel, SectionValues
+from beamopt.scene.actuator import Actuator, Loading, RodRules, rod_model
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import (
     Design,
     Grid,
     Levels,
@@ -22,22 +24,20 @@ from beamopt.design import (
     load_design,
     section_values,
 )
-from beamopt.errors import InputError, NoEquilibriumError
-from beamopt.input_file import parse_toml, read_text
-from beamopt.judge import Judge
-from beamopt.making import Making
-from beamopt.model import Count, Model, Number, parse, quantity
-from beamopt.overrides import overridden
-from beamopt.rod.ladder import RodModel, SectionValues
-from beamopt.seal import Seal
-from beamopt.search_settings import Refining, Search, Stop
+from beamopt.scene.manufacturing_keys import Making
+from beamopt.scene.overrides import overridden
+from beamopt.scene.rod_choice import Climb, climb
+from beamopt.scene.seal_keys import Seal
+from beamopt.scene.search_keys import Refining, Search, Stop
+from beamopt.scene.segment_files import with_sections
+from beamopt.scene.target_keys import TargetChoice
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.saint_venant import section_saint_venant
-from beamopt.segment_files import with_sections
-from beamopt.target import Target, oddities, read_target
-from beamopt.target_choice import TargetChoice
-from beamopt.workspace import Workspace
+from beamopt.storage.checked_keys import Count, Model, Number, parse, quantity
+from beamopt.storage.input_file import parse_toml, read_text
+from beamopt.target.target import Target, oddities, read_target
+from beamopt.target.workspace import Workspace
 
 __all__ = ["Pressures", "Scene", "SectionRules", "load_scene"]
 

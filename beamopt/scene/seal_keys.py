@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 from pydantic import model_validator
 
-from beamopt.model import Model, Number, quantity
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
+from beamopt.storage.checked_keys import Model, Number, quantity
 
 __all__ = ["Seal"]
 

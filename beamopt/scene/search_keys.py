@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from beamopt.generation_size import check_generation
-from beamopt.model import Count, Model, Number, quantity
+from beamopt.scene.generation_size import check_generation
+from beamopt.storage.checked_keys import Count, Model, Number, quantity
 
 __all__ = ["Refining", "Search", "Stop"]
 

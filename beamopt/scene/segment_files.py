@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from beamopt.actuator import RodRules
-from beamopt.design import Design, read_design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
+from beamopt.scene.actuator import RodRules
+from beamopt.scene.design import Design, read_design
 
 __all__ = ["MOST_INLINE", "with_sections"]
 

@@ -8,13 +8,13 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from beamopt.actuator import Vector
-from beamopt.aim import Aim
-from beamopt.errors import InputError
-from beamopt.model import Count, Model, Number, quantity
-from beamopt.pairs import read_pairs
-from beamopt.target import BaseFrame, Target
-from beamopt.trajectory import MOST_SAMPLES, read_path
+from beamopt.base.errors import InputError
+from beamopt.scene.actuator import Vector
+from beamopt.storage.checked_keys import Count, Model, Number, quantity
+from beamopt.target.aim import Aim
+from beamopt.target.point_table import read_pairs
+from beamopt.target.target import BaseFrame, Target
+from beamopt.target.trajectory import MOST_SAMPLES, read_path
 
 __all__ = ["MOST_PATHS", "TargetChoice"]
 

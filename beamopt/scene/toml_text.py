@@ -6,8 +6,8 @@ import json
 from textwrap import wrap
 from typing import Any
 
-from beamopt.model import Model, allowed
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
+from beamopt.storage.checked_keys import Model, allowed
 
 __all__ = ["scene_text"]
 

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
-from beamopt.evolve.improvement import Improvement
-from beamopt.evolve.variation import Variation
-from beamopt.judge import Status, Verdict
-from beamopt.scene import Scene
+from beamopt.base.random_streams import Purpose, stream
+from beamopt.judge.judge import Status, Verdict
+from beamopt.scene.scene import Scene
+from beamopt.search.improvement import Improvement
+from beamopt.search.variation import Variation
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.streams import Purpose, stream
 
 __all__ = ["Generation", "GeneticAlgorithm", "Individual", "Stage"]
 

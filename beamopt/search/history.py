@@ -8,7 +8,7 @@ from typing import NamedTuple, overload
 
 import numpy as np
 
-from beamopt.evolve.algorithm import Generation
+from beamopt.search.algorithm import Generation
 
 __all__ = ["GenerationNumbers", "History"]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamopt.judge import Judge
+from beamopt.base.random_streams import Purpose, stream
+from beamopt.judge.judge import Judge
 from beamopt.refine.refine import improved
-from beamopt.scene import Scene
-from beamopt.search_settings import Refining
+from beamopt.scene.scene import Scene
+from beamopt.scene.search_keys import Refining
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.streams import Purpose, stream
 
 __all__ = ["Improvement"]
 

@@ -15,13 +15,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from beamopt.errors import InputError
-from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.files import naming, refuse_link
-from beamopt.input_file import check_regular
-from beamopt.judge import Status, Verdict
-from beamopt.line_journal import with_digest, without_digest
+from beamopt.base.errors import InputError
+from beamopt.judge.judge import Status, Verdict
+from beamopt.search.algorithm import GeneticAlgorithm
 from beamopt.section.feature_points import FeaturePoints
+from beamopt.storage.input_file import check_regular
+from beamopt.storage.line_journal import with_digest, without_digest
+from beamopt.storage.writing import naming, refuse_link
 
 __all__ = ["Journal"]
 

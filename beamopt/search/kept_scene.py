@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from beamopt.input_file import read_bytes
-from beamopt.scene import Scene
-from beamopt.target_choice import MOST_PATHS
+from beamopt.scene.scene import Scene
+from beamopt.scene.target_keys import MOST_PATHS
+from beamopt.storage.input_file import read_bytes
 
 __all__ = ["PATHS", "SOURCES", "scene_to_keep"]
 

@@ -7,16 +7,16 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 
-from beamopt.errors import InputError
-from beamopt.evolve.algorithm import Generation, GeneticAlgorithm
-from beamopt.evolve.history import History
-from beamopt.evolve.improvement import Improvement
-from beamopt.evolve.journal import Journal
-from beamopt.evolve.stopping import StopReason, why_stop
-from beamopt.evolve.variation import Variation
-from beamopt.judge import Judge, Status, judge_all
-from beamopt.scene import Scene
-from beamopt.timing import Timing
+from beamopt.base.errors import InputError
+from beamopt.judge.judge import Judge, Status, judge_all
+from beamopt.scene.scene import Scene
+from beamopt.search.algorithm import Generation, GeneticAlgorithm
+from beamopt.search.history import History
+from beamopt.search.improvement import Improvement
+from beamopt.search.journal import Journal
+from beamopt.search.stopping import StopReason, why_stop
+from beamopt.search.variation import Variation
+from beamopt.storage.timing import Timing
 
 __all__ = ["Ended", "run"]
 

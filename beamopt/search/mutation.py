@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamopt.arrays import IndexArray, LabelArray
+from beamopt.base.arrays import IndexArray, LabelArray
 from beamopt.section.feature_points import SUPPLIES, FeaturePoints
 from beamopt.section.neighbours import neighbour_edges
 

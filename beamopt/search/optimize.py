@@ -9,18 +9,18 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from beamopt.design import Design
-from beamopt.evolve.algorithm import Generation, Individual
-from beamopt.evolve.journal import Journal
-from beamopt.evolve.run import Ended, run
-from beamopt.evolve.stopping import StopReason
-from beamopt.judge import Status
+from beamopt.judge.judge import Status
 from beamopt.refine.refine import StageRecord
-from beamopt.refinement import refine_points
-from beamopt.result import Optimisation
-from beamopt.run_folder import RunFolder
-from beamopt.scene import Scene
-from beamopt.target import Target
+from beamopt.refine.refine_design import refine_points
+from beamopt.scene.design import Design
+from beamopt.scene.scene import Scene
+from beamopt.search.algorithm import Generation, Individual
+from beamopt.search.journal import Journal
+from beamopt.search.loop import Ended, run
+from beamopt.search.result import Optimisation
+from beamopt.search.run_folder import RunFolder
+from beamopt.search.stopping import StopReason
+from beamopt.target.target import Target
 
 __all__ = ["optimize"]
 
@@ -43,7 +43,7 @@ def optimize(
     scene : what to search, and how.
     out : the run folder; None keeps everything in memory.
     resume : go on with the run in `out` where it was left (also when it is complete).
-    executor, workers, callback : see `beamopt.evolve.run.run`.
+    executor, workers, callback : see `beamopt.search.loop.run`.
     refining : called after every stage of a refinement, where the scene asks for one.
     figures : whether to draw into the run folder.
 

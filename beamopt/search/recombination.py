@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 

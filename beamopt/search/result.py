@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.answers import Answers
+from beamopt.base.brief import Brief
 from beamopt.bound.certificate import Certificate, quick_certificate
-from beamopt.brief import Brief
-from beamopt.design import Design
-from beamopt.evolve.algorithm import Generation
-from beamopt.evolve.history import History
-from beamopt.evolve.stopping import StopReason
-from beamopt.judge import Judge, Verdict
+from beamopt.judge.answers import Answers
+from beamopt.judge.judge import Judge, Verdict
 from beamopt.reach.reach import Reach
-from beamopt.refinement import Refinement
+from beamopt.refine.refine_design import Refinement
 from beamopt.rod.ladder import Rung
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.scene import Scene
-from beamopt.target import Target
-from beamopt.timing import Timing
-from beamopt.workspace import pressure_grid
+from beamopt.scene.design import Design
+from beamopt.scene.scene import Scene
+from beamopt.search.algorithm import Generation
+from beamopt.search.history import History
+from beamopt.search.stopping import StopReason
+from beamopt.storage.timing import Timing
+from beamopt.target.target import Target
+from beamopt.target.workspace import pressure_grid
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -120,8 +120,8 @@ class Optimisation:
 
     def to_frame(self) -> DataFrame:
         """Tips of the best design and of the target, a row each, as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
-        from beamopt.result_tables import tips_table_csv
+        from beamopt.judge.answer_tables import tips_table_csv
+        from beamopt.storage.frames import frame_of
 
         return frame_of(tips_table_csv(self.target.aim, self.answers))
 

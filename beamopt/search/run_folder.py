@@ -11,29 +11,29 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.errors import InputError
-from beamopt.evolve.history import GenerationNumbers
-from beamopt.files import csv_text, json_text, write_atomic, write_changed
-from beamopt.folder import FolderKind, claimed, clear_leftovers, differences
-from beamopt.input_file import read_bytes, read_json
-from beamopt.judge import Status
-from beamopt.kept_scene import PATHS, SOURCES, scene_to_keep
-from beamopt.pairs import aim_csv
-from beamopt.provenance import provenance
-from beamopt.refinement_folder import (
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import provenance
+from beamopt.judge.answer_tables import paths_csv, tips_table_csv
+from beamopt.judge.judge import Status
+from beamopt.refine.folder import (
     REFINEMENT_FILES,
     becomes,
     refinement_numbers,
     set_aside,
     write_refinement,
 )
-from beamopt.result import EarlierRefinement, Optimisation
-from beamopt.result_tables import paths_csv, tips_table_csv
-from beamopt.run_summary import summary
-from beamopt.scene import Scene, load_scene
-from beamopt.scene_text import scene_text
-from beamopt.target import Target
-from beamopt.timing import read_times, write_times
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.scene.toml_text import scene_text
+from beamopt.search.history import GenerationNumbers
+from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
+from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.run_summary import summary
+from beamopt.storage.input_file import read_bytes, read_json
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, differences
+from beamopt.storage.timing import read_times, write_times
+from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
+from beamopt.target.point_table import aim_csv
+from beamopt.target.target import Target
 
 __all__ = ["RunFolder"]
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.actuator import Loading, RodRules
-from beamopt.aim import Aim
-from beamopt.bound_folder import bound_summary
-from beamopt.judge import Status, Verdict
+from beamopt.bound.folder import bound_summary
+from beamopt.judge.judge import Status, Verdict
 from beamopt.reach.reach import TOLERANCE
-from beamopt.result import Optimisation
+from beamopt.scene.actuator import Loading, RodRules
+from beamopt.search.result import Optimisation
+from beamopt.target.aim import Aim
 
 __all__ = ["summary"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import Enum
 
-from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.evolve.history import GenerationNumbers
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
+from beamopt.search.algorithm import GeneticAlgorithm
+from beamopt.search.history import GenerationNumbers
 
 __all__ = ["StopReason", "why_stop"]
 

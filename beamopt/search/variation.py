@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.evolve.mutation import MUTATIONS, mutate
-from beamopt.evolve.recombination import RECOMBINATIONS, Offspring
-from beamopt.scene import Scene
+from beamopt.scene.scene import Scene
+from beamopt.search.mutation import MUTATIONS, mutate
+from beamopt.search.recombination import RECOMBINATIONS, Offspring
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
 

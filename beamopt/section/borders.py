@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.drawing import Shape, rasterise
 from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import PolarGrid

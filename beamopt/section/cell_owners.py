@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import Domain, PolarGrid
 from beamopt.section.raster import TIE

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.section.feature_points import MATERIAL
 from beamopt.section.grid import PolarGrid
 from beamopt.section.warping_sums import WarpingSums

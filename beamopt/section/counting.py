@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.grid import PolarGrid
 from beamopt.section.runs import Runs
 from beamopt.section.symmetry import Symmetry

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.cell_owners import points_with_cells
 from beamopt.section.drawing import Shape, rasterise
 from beamopt.section.feature_points import MATERIAL, SUPPLIES, FeaturePoints

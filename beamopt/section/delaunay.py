@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 
 __all__ = ["delaunay_edges"]
 

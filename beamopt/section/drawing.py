@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.section.feature_points import SUPPLIES
 from beamopt.section.grid import PolarGrid, angle_between
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.grid import PolarGrid
 
 __all__ = ["MATERIAL", "SUPPLIES", "FeaturePoints"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 
 __all__ = ["fill_islands", "fill_small_chambers"]
 

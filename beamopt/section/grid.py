@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = ["Domain", "PolarGrid", "angle_between"]
 

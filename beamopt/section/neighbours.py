@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 from beamopt.section.cell_owners import cell_owners
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints

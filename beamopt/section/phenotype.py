@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.cell_owners import cell_owners
 from beamopt.section.counting import Counts, counts_for, take_counts
 from beamopt.section.delaunay import delaunay_edges

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.feature_points import MATERIAL, SUPPLIES
 from beamopt.section.grid import PolarGrid
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.grid import PolarGrid
 
 __all__ = ["Runs", "find_runs", "room_for_runs", "runs_of_row"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.section.cell_warping import cell_warping, section_quads
 from beamopt.section.feature_points import MATERIAL
 from beamopt.section.grid import PolarGrid

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
 from beamopt.section.spans import ROW_SHARE, Spans, circles_of, no_spans, widths_within

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.borders import (
     between_cells,
     between_supplies,

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 from beamopt.section.grid import PolarGrid
 
 __all__ = [

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.banded import solve_banded
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import sum_moments

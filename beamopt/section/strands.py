@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import IndexArray, LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import IndexArray, LabelArray
+from beamopt.base.compiled import compiled
 
 __all__ = ["join_corners", "label_strands", "number_corners"]
 

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.section.cell_owners import NEAR
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import LabelArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import LabelArray
+from beamopt.base.compiled import compiled
 from beamopt.section.seal import SealRules
 
 __all__ = ["add_walls", "wall_steps"]

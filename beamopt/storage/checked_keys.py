@@ -9,8 +9,8 @@ from typing import Annotated, Any, Self, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
 
-from beamopt.brief import Brief
-from beamopt.errors import InputError
+from beamopt.base.brief import Brief
+from beamopt.base.errors import InputError
 
 __all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity"]
 

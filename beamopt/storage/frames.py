@@ -7,7 +7,7 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from beamopt.files import cell_text
+from beamopt.storage.writing import cell_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame

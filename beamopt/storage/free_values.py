@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 
 __all__ = ["FreeTable"]
 

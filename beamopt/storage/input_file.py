@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 
 __all__ = [
     "MOST_BYTES",

@@ -14,10 +14,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from beamopt.errors import InputError
-from beamopt.files import naming, refuse_link, write_atomic
-from beamopt.folder import differences
-from beamopt.input_file import check_regular
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import check_regular
+from beamopt.storage.result_folder import differences
+from beamopt.storage.writing import naming, refuse_link, write_atomic
 
 __all__ = ["LineJournal", "with_digest", "without_digest"]
 

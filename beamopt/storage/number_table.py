@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.input_file import read_text
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import read_text
 
 __all__ = ["Table", "read_table"]
 

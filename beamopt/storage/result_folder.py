@@ -12,10 +12,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from beamopt.errors import InputError
-from beamopt.file_lock import HeldElsewhereError, locked
-from beamopt.files import refuse_link
-from beamopt.scratch import clear_scratch
+from beamopt.base.errors import InputError
+from beamopt.storage.file_lock import HeldElsewhereError, locked
+from beamopt.storage.scratch import clear_scratch
+from beamopt.storage.writing import refuse_link
 
 __all__ = [
     "LOCK",

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from beamopt.file_lock import is_free
+from beamopt.storage.file_lock import is_free
 
 __all__ = ["clear_scratch", "scratch_folder"]
 

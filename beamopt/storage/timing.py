@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from beamopt.files import csv_text, write_atomic
-from beamopt.input_file import read_text
+from beamopt.storage.input_file import read_text
+from beamopt.storage.writing import csv_text, write_atomic
 
 __all__ = ["Timing", "read_times", "write_times"]
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 
 __all__ = [
     "cell_text",

@@ -6,10 +6,10 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beamopt.brief import changed_fields
-from beamopt.bundled import bundled_scenes
-from beamopt.errors import InputError
-from beamopt.scene import Scene, load_scene
+from beamopt.base.brief import changed_fields
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.scene import Scene, load_scene
 
 __all__ = ["COMBINATIONS", "TARGETS", "Plan", "Run"]
 

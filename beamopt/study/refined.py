@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.bound.certificate import Certificate, certificate
-from beamopt.design import load_design
-from beamopt.files import csv_text, write_atomic
 from beamopt.plot.study import refined_figure
 from beamopt.plot.style import save_figure
-from beamopt.scene import load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
+from beamopt.storage.writing import csv_text, write_atomic
 from beamopt.study.plan import COMBINATIONS, Plan
 from beamopt.study.table import Outcome, RefinedOutcome, row, targets_of, title
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design, load_design
-from beamopt.files import csv_text, json_text, write_atomic, write_changed
-from beamopt.judge import Status
+from beamopt.base.arrays import FloatArray
+from beamopt.base.provenance import provenance
+from beamopt.judge.judge import Status
 from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance
-from beamopt.scene import load_scene
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import load_scene
+from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.refined import write_refined
 from beamopt.study.table import (

@@ -11,20 +11,20 @@ from typing import Literal
 
 from pydantic import Field
 
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
-from beamopt.files import json_text, refuse_link, write_changed
-from beamopt.folder import FolderKind, claimed, clear_leftovers, own_subfolder
-from beamopt.input_file import read_json
-from beamopt.model import Count, Model, parse, quantity
-from beamopt.optimisation import optimize
-from beamopt.refinement import Refinement
+from beamopt.base.errors import InputError
+from beamopt.base.processes import in_process, processes
+from beamopt.base.tasks import Tasks, check_none_lost, solve_all
+from beamopt.refine.refine_design import Refinement
+from beamopt.search.optimize import optimize
+from beamopt.search.stopping import StopReason
+from beamopt.storage.checked_keys import Count, Model, parse, quantity
+from beamopt.storage.input_file import read_json
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, own_subfolder
+from beamopt.storage.timing import read_times
+from beamopt.storage.writing import json_text, refuse_link, write_changed
 from beamopt.study.plan import TARGETS, Plan, Run
-from beamopt.study.pool import in_process, processes
 from beamopt.study.report import names, write_report
 from beamopt.study.table import Outcome, RefinedOutcome, StudyOutcomes
-from beamopt.study.work import Tasks, check_none_lost, solve_all
-from beamopt.timing import read_times
 
 __all__ = ["run_study"]
 

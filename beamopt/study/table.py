@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.brief import Brief
-from beamopt.files import csv_text
-from beamopt.judge import Verdict
+from beamopt.base.brief import Brief
+from beamopt.judge.judge import Verdict
+from beamopt.storage.writing import csv_text
 from beamopt.study.plan import COMBINATIONS, Run
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class StudyOutcomes(list[Outcome]):
 
     def to_frame(self) -> DataFrame:
         """Runs, then the best, mean and worst of each kind, as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
 
         return frame_of(table_csv(self))
 

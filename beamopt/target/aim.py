@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.workspace import NODES, Workspace
+from beamopt.base.arrays import FloatArray
+from beamopt.target.workspace import NODES, Workspace
 
 __all__ = ["Aim", "aim_of_workspace"]
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.files import csv_text
-from beamopt.table import Table, read_table
-from beamopt.target import BaseFrame, Target, check_scale
-from beamopt.workspace import COLUMNS, tips_csv
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.storage.number_table import Table, read_table
+from beamopt.storage.writing import csv_text
+from beamopt.target.aim import Aim
+from beamopt.target.target import BaseFrame, Target, check_scale
+from beamopt.target.workspace import COLUMNS, tips_csv
 
 __all__ = ["aim_csv", "direction_weight_of", "read_pairs"]
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.aim import Aim, aim_of_workspace
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.section.cross_section import CrossSection
-from beamopt.table import Table, read_table
-from beamopt.workspace import COLUMNS, NODES, Workspace, node_index, pressure_grid
+from beamopt.storage.number_table import Table, read_table
+from beamopt.target.aim import Aim, aim_of_workspace
+from beamopt.target.workspace import COLUMNS, NODES, Workspace, node_index, pressure_grid
 
 __all__ = ["BaseFrame", "Target", "check_scale", "oddities", "read_target"]
 

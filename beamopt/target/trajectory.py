@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.errors import InputError
-from beamopt.table import read_table
-from beamopt.target import BaseFrame, check_scale
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.errors import InputError
+from beamopt.storage.number_table import read_table
+from beamopt.target.target import BaseFrame, check_scale
 
 __all__ = ["MOST_SAMPLES", "read_path", "sampled"]
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.files import csv_text
+from beamopt.base.arrays import FloatArray
+from beamopt.storage.writing import csv_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -134,7 +134,7 @@ class Workspace:
 
     def to_frame(self) -> DataFrame:
         """Columns p1, p2, p3 [kPa], x, y, z [mm], as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
 
         return frame_of(tips_csv(self.pressures, self.tips))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
@@ -100,8 +100,8 @@ class Within:
 
     def to_frame(self) -> DataFrame:
         """Tips with their estimated errors, beside the beam's, as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
-        from femcheck.accuracy.run import tips_csv
+        from beamopt.storage.frames import frame_of
+        from femcheck.accuracy.folder import tips_csv
 
         return frame_of(tips_csv(self))
 

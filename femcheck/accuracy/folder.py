@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import NoEquilibriumError
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.line_journal import LineJournal
-from beamopt.provenance import provenance
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import NoEquilibriumError
+from beamopt.base.provenance import provenance
+from beamopt.storage.line_journal import LineJournal
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import csv_text, json_text, write_atomic
 from femcheck.accuracy.ending import Ending, Within
 from femcheck.accuracy.within import Progress, RungChoice, answer_within, check_asked
 from femcheck.chart.kept import asked_of, measured_in
 from femcheck.chart.measure import Measured, key_of, written
-from femcheck.check.folder import PACKAGES
 from femcheck.models.question import Question
 from femcheck.models.reply import Model
+from femcheck.solved.folder import PACKAGES
 
 __all__ = ["beam_difference", "run_accuracy", "tips_csv"]
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.files import csv_text, write_atomic
+from beamopt.storage.writing import csv_text, write_atomic
 from femcheck.models.question import Question
 from femcheck.models.solid import SolidModel
 

@@ -9,8 +9,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from femcheck.accuracy.ending import Ending, Source, Tried, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of
 from femcheck.chart.lineup import STIFFER

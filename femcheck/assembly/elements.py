@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 
 __all__ = ["add_element_forces", "add_element_stiffness", "deformation"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import IndexArray
+from beamopt.base.arrays import IndexArray
 
 __all__ = ["Pattern", "make_pattern", "places_in"]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.pattern import Pattern
 
 __all__ = ["Reduction", "UpperMatrix"]

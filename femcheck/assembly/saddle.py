@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.compiled import compiled
 from femcheck.assembly.reduction import UpperMatrix
 
 __all__ = ["Saddle", "VolumeColumns", "add_volume_columns"]

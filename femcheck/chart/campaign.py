@@ -11,26 +11,26 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.errors import InputError
-from beamopt.files import csv_text, json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.line_journal import LineJournal
+from beamopt.base.errors import InputError
+from beamopt.base.processes import processes
+from beamopt.base.provenance import provenance
+from beamopt.base.tasks import solve_all
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance
-from beamopt.study.pool import processes
-from beamopt.study.work import solve_all
+from beamopt.storage.line_journal import LineJournal
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import csv_text, json_text, write_atomic
 from femcheck.chart.chart import ACCURACIES, Chart
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
 from femcheck.chart.table import chart_csv
-from femcheck.check.folder import PACKAGES
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, nothing
 from femcheck.models.solid import SolidModel
+from femcheck.solved.folder import PACKAGES
 
 __all__ = ["Budget", "run_chart"]
 

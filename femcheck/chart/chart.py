@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.brief import Brief
+from beamopt.base.brief import Brief
 from femcheck.chart.lineup import line_up
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Reference
@@ -99,7 +99,7 @@ class Chart:
 
     def to_frame(self) -> DataFrame:
         """Error, cost and ending of every model, a row each, as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
         from femcheck.chart.table import chart_csv
 
         return frame_of(chart_csv(self))

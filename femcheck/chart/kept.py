@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.design import Design
-from beamopt.errors import InputError
-from beamopt.line_journal import LineJournal
-from beamopt.model import parse
+from beamopt.base.errors import InputError
+from beamopt.scene.design import Design
+from beamopt.storage.checked_keys import parse
+from beamopt.storage.line_journal import LineJournal
 from femcheck.chart.chart import Chart
 from femcheck.chart.lineup import line_up, mark_of
 from femcheck.chart.measure import Measured, is_final, key_of, read

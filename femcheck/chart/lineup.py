@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from femcheck.models.beam import ArcOnGrid, RodByMethod, RodOnOutline
 from femcheck.models.felupe import FelupeModel
 from femcheck.models.question import Question

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.provenance import provenance
-from femcheck.check.case import forget_workshops
-from femcheck.check.folder import PACKAGES
+from beamopt.base.provenance import provenance
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import ended_of
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply, cpu_seconds
+from femcheck.solved.case import forget_workshops
+from femcheck.solved.folder import PACKAGES
 
 __all__ = ["Measured", "is_final", "key_of", "made_with", "measure", "read", "written"]
 

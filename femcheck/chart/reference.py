@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.chart.lineup import Series
 from femcheck.chart.measure import Measured, key_of
 from femcheck.models.beam import TIGHTEST, RodOnOutline

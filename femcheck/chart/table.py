@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.files import csv_text
+from beamopt.storage.writing import csv_text
 from femcheck.chart.chart import Chart, Row
 
 __all__ = ["chart_csv"]

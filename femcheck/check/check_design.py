@@ -9,25 +9,25 @@ from pathlib import Path
 
 import numpy as np
 
-import femcheck.picture as picture
-from beamopt.study.pool import processes
-from beamopt.study.work import solve_all
-from femcheck.check.case import CaseResult, Solid
+import femcheck.solved.picture as picture
+from beamopt.base.processes import processes
+from beamopt.base.tasks import solve_all
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import compare
-from femcheck.check.folder import CheckFolder
 from femcheck.check.kept import read_case, write_case
-from femcheck.check.meshes import heights_of, section_meshes
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
-from femcheck.check.subject import Subject, geometry_steps
 from femcheck.check.tables import tables_of
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import quality_of
 from femcheck.mesh.section_mesh import SectionMesh
+from femcheck.solved.case import CaseResult, Solid
+from femcheck.solved.folder import CheckFolder
+from femcheck.solved.meshes import heights_of, section_meshes
+from femcheck.solved.subject import Subject, geometry_steps
 
 __all__ = ["check_design"]
 

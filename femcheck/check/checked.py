@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from beamopt.brief import Brief
-from femcheck.check.case import CaseResult
+from beamopt.base.brief import Brief
 from femcheck.check.comparison import Comparison
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Key
 from femcheck.check.stage import Stage
-from femcheck.check.subject import GeometrySteps, Subject
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import Quality
+from femcheck.solved.case import CaseResult
+from femcheck.solved.subject import GeometrySteps, Subject
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -58,7 +58,7 @@ class Checked:
 
     def to_frame(self) -> DataFrame:
         """Tips of every solid beside the beam's (`compare.csv`), as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
         from femcheck.check.tables import compare_csv
 
         return frame_of(compare_csv(self))

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.workspace import NODES, node_index
-from femcheck.check.beside_beam import STILL, BesideBeam
-from femcheck.check.case import CaseResult
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.target.workspace import NODES, node_index
 from femcheck.check.schedule import Key
 from femcheck.check.stage import Stage
-from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.solid.elements import ELEMENTS
+from femcheck.solved.beside_beam import STILL, BesideBeam
+from femcheck.solved.case import CaseResult
+from femcheck.solved.subject import Subject
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -94,7 +94,7 @@ class Comparison(BesideBeam):
 
     def to_frame(self) -> DataFrame:
         """Beam and solid at each combination (`table.csv`), as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
         from femcheck.check.tables import table_csv
 
         return frame_of(table_csv(self))

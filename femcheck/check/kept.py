@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from femcheck.check.case import CaseResult
 from femcheck.check.schedule import Key
-from femcheck.check.store import read_arrays, write_arrays
 from femcheck.continuation.outcome import Outcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.state import State
+from femcheck.solved.case import CaseResult
+from femcheck.solved.store import read_arrays, write_arrays
 
 __all__ = ["case_file", "read_case", "write_case"]
 

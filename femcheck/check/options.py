@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamopt.brief import changed_fields
-from beamopt.errors import InputError
-from femcheck.check.solid_options import SolidOptions
+from beamopt.base.brief import changed_fields
+from beamopt.base.errors import InputError
+from femcheck.solved.solid_options import SolidOptions
 
 __all__ = ["CheckOptions"]
 

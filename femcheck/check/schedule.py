@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.study.work import lost_errors
-from femcheck.check.case import Case, CaseResult, rest_slopes, solve_case, stopped
+from beamopt.base.arrays import FloatArray
+from beamopt.base.tasks import lost_errors
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.pressure_tree import Node, all_nodes, ancestors, prediction
 from femcheck.solid.state import State
+from femcheck.solved.case import Case, CaseResult, rest_slopes, solve_case, stopped
 
 __all__ = ["Key", "Schedule"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from femcheck.check.case import Solid
+from femcheck.solved.case import Solid
 
 __all__ = ["Stage"]
 

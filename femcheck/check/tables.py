@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.files import csv_text, json_text
+from beamopt.storage.writing import csv_text, json_text
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
 from femcheck.continuation.ended import Ended

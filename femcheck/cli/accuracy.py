@@ -8,13 +8,13 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.errors import InputError
-from beamopt.provenance import thread_settings
 from femcheck.accuracy.ending import Within
-from femcheck.accuracy.run import beam_difference, run_accuracy
+from femcheck.accuracy.folder import beam_difference, run_accuracy
 from femcheck.accuracy.within import RungChoice
 from femcheck.chart.chart import seconds_text
 from femcheck.cli.request import RunRequest

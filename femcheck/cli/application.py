@@ -115,7 +115,7 @@ def run_designs(
     not be computed.
     """
     from femcheck.cli.request import RunRequest
-    from femcheck.cli.run import run_command
+    from femcheck.cli.run_command import run_command
 
     run_command(
         RunRequest(

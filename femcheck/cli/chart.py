@@ -11,14 +11,14 @@ from pydantic import TypeAdapter
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.errors import InputError
-from beamopt.grid_keys import Levels
-from beamopt.provenance import thread_settings
+from beamopt.scene.grid_keys import Levels
+from femcheck.chart.campaign import Budget, run_chart
 from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
-from femcheck.chart.run import Budget, run_chart
 from femcheck.cli.request import RunRequest, options_of
 from femcheck.cli.subjects import question_of
 from femcheck.cli.verdicts import code_of

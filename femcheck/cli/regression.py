@@ -10,16 +10,16 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.files import check_replaceable, csv_text, write_atomic
-from beamopt.provenance import thread_settings
+from beamopt.storage.writing import check_replaceable, csv_text, write_atomic
 from femcheck.cli.verdicts import code_of
 from femcheck.continuation.ended import Ended
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.moved import Moved, said
-from femcheck.regression.run import ContradictionError, Regression, hold_designs, regress
+from femcheck.regression.regression import ContradictionError, Regression, hold_designs, regress
 
 __all__ = ["baseline_command", "regress_command"]
 

@@ -9,14 +9,14 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.cli.progress import console
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import Comparison
-from femcheck.check.subject import Subject
 from femcheck.check.tables import verdict
 from femcheck.continuation.ended import Ended
 from femcheck.mesh.quality import Quality
+from femcheck.solved.subject import Subject
 
 __all__ = ["notes_of", "report"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from beamopt.base.errors import InputError
 from beamopt.cli.progress import console
-from beamopt.errors import InputError
-from beamopt.files import check_replaceable, write_atomic
+from beamopt.storage.writing import check_replaceable, write_atomic
 
 __all__ = ["report_command"]
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.limits import Limits
 from femcheck.material.catalogue import MATERIALS

@@ -9,24 +9,24 @@ from typing import TypeVar
 import numpy as np
 from rich.markup import escape
 
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.errors import InputError
-from beamopt.provenance import thread_settings
-from femcheck.check.folder import CheckFolder
+from femcheck.check.check_design import check_design
 from femcheck.check.options import CheckOptions
-from femcheck.check.run import check_design
-from femcheck.check.subject import (
-    Subject,
-)
 from femcheck.cli.prediction import report_prediction
 from femcheck.cli.report import report
 from femcheck.cli.request import RunRequest, options_of
 from femcheck.cli.subjects import folders_of, subjects_of
 from femcheck.cli.verdicts import code_of
 from femcheck.prediction.options import PredictionOptions
-from femcheck.prediction.run import predict_design
+from femcheck.prediction.predict_design import predict_design
+from femcheck.solved.folder import CheckFolder
+from femcheck.solved.subject import (
+    Subject,
+)
 
 __all__ = ["run_command"]
 

@@ -11,14 +11,14 @@ from time import perf_counter
 from rich.markup import escape
 from rich.table import Table
 
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with
 from beamopt.cli.progress import console, progress_bar
-from beamopt.errors import InputError
-from beamopt.provenance import thread_settings
 from femcheck.cli.verdicts import code_of
 from femcheck.stability.axes import AXES
 from femcheck.stability.found import AxisFound, agreement_of
-from femcheck.stability.run import redraw_map, run_map
+from femcheck.stability.stability_map import redraw_map, run_map
 from femcheck.stability.work import Key, Result
 
 __all__ = ["StabilityRequest", "stability_command"]

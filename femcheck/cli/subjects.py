@@ -7,12 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.actuator import Actuator
-from beamopt.design import Design
-from beamopt.errors import InputError
-from beamopt.model import allowed
-from beamopt.named import named_design
-from femcheck.check.subject import (
+from beamopt.base.errors import InputError
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.design import Design
+from beamopt.scene.named import named_design
+from beamopt.storage.checked_keys import allowed
+from femcheck.cli.request import RunRequest
+from femcheck.models.question import LawChoice, Question
+from femcheck.prediction.options import PredictionOptions
+from femcheck.solved.subject import (
     LoadedDesignError,
     Subject,
     UnsealedDesignError,
@@ -21,9 +24,6 @@ from femcheck.check.subject import (
     sealed_copy,
     slender_copy,
 )
-from femcheck.cli.request import RunRequest
-from femcheck.models.question import LawChoice, Question
-from femcheck.prediction.options import PredictionOptions
 
 __all__ = ["folders_of", "question_of", "refuse_twins", "subjects_of"]
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from beamopt.cli.exit_codes import ExitCode, joined
 from femcheck.accuracy.ending import Ending, Within
-from femcheck.accuracy.run import beam_difference
+from femcheck.accuracy.folder import beam_difference
 from femcheck.chart.chart import Chart
 from femcheck.check.checked import Checked
 from femcheck.continuation.ended import ReplyStatus
 from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
 from femcheck.prediction.prediction import Prediction
-from femcheck.regression.run import Regression
+from femcheck.regression.regression import Regression
 from femcheck.stability.ending import Ending as CellEnding
 from femcheck.stability.found import AxisFound, agreement_of
 

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver
 from femcheck.solid.equilibrium import Equilibrium, Forces
 from femcheck.solid.state import State

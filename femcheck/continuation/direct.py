@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 
 __all__ = ["DirectSolver", "Pardiso", "SingularMatrixError", "SuperLU", "direct_solver"]

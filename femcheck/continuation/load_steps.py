@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver
 from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.newton import Newton

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.control import Control, FixedLoad
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.limits import Budget

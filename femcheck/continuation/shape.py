@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.solid.body import Body
 from femcheck.solid.plate import rotation
 from femcheck.solid.state import State, placed

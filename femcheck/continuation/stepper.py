@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.control import ArcControl, Control, Mix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.limits import Budget

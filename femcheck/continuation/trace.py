@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.mode import unstable_mode

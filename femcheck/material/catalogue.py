@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from femcheck.material.gent import Gent
 from femcheck.material.isotropic import Isotropic
 from femcheck.material.law import Law

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.material.volumetric import add_pressure, add_pressure_stiffness, volume_ratio_log
 
 __all__ = ["Differentiable", "PressureTerm", "differences", "random_deformations"]

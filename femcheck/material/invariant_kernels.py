@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
 from femcheck.material.tensors import inverse, log_ratio, subtract_products
 
 __all__ = ["fill_stiffness", "fill_stress"]

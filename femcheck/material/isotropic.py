@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from femcheck.material.invariant_kernels import fill_stiffness, fill_stress
 from femcheck.material.stretch_range import StretchRange, stretch_range
 from femcheck.material.tensors import invariants

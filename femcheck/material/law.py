@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = ["Law"]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.material.isotropic import Isotropic, Moduli, require
 
 __all__ = ["MooneyRivlin"]

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = ["StretchRange", "stretch_range"]
 

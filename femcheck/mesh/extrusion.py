@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = ["Extrusion", "extrude", "stations"]

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.files import replacing
+from beamopt.base.arrays import FloatArray
+from beamopt.storage.writing import replacing
 from femcheck.mesh.extrusion import Extrusion
 
 __all__ = ["DISPLACEMENT", "TAGS", "VTU_WEDGE", "write_deformed", "write_mesh"]

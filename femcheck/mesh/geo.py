@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.outline.outline import Loop, Outline
 from beamopt.outline.ring import USUAL_RADIUS
 from femcheck.mesh.wall_thickness import thickness_behind

@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.brief import Brief, changed_fields
-from beamopt.files import naming
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.brief import Brief, changed_fields
 from beamopt.outline.outline import Outline
-from beamopt.scratch import scratch_folder
+from beamopt.storage.scratch import scratch_folder
+from beamopt.storage.writing import naming
 from femcheck.mesh.geo import SectionSizes, geo_script, least_triangles
 from femcheck.mesh.section_mesh import SectionMesh
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.outline import Outline
 from femcheck.mesh.section_mesh import SectionMesh
 from femcheck.mesh.wall_thickness import thickness_behind

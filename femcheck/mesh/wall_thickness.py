@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 
 __all__ = ["thickness_behind"]
 

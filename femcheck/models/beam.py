@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from beamopt.chart.methods import all_methods
-from beamopt.design import Design
+from beamopt.comparators.methods import all_methods
 from beamopt.rod.ladder import RodModel, Rung, SectionValues, Tips
 from beamopt.rod.pressure_tree import parents_on_grid
+from beamopt.scene.design import Design
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.question import Question
 from femcheck.models.reply import Reply, nothing
@@ -107,7 +107,7 @@ def _answered(tips: Tips) -> Reply:
 class RodByMethod:
     """The rod of the design's section by one of the methods for loaded rods.
 
-    method : a name of `beamopt.chart.methods`. count : modes, elements, steps, or digits.
+    method : a name of `beamopt.comparators.methods`. count : modes, elements, steps, or digits.
     """
 
     method: str

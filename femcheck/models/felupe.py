@@ -23,10 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.pattern import Pattern
 from femcheck.assembly.reduction import UpperMatrix
-from femcheck.check.case import Solid
 from femcheck.material.law import Law
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection
@@ -39,6 +38,7 @@ from femcheck.solid.equilibrium import Equilibrium, Forces
 from femcheck.solid.plate import cross_matrix
 from femcheck.solid.state import State
 from femcheck.solid.tip_plate import TipPlate
+from femcheck.solved.case import Solid
 
 __all__ = ["FelupeEquilibrium", "FelupeModel"]
 

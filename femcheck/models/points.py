@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
-from beamopt.arrays import FloatArray
-from femcheck.check.case import Case, CaseResult, Solid, solve_case, stopped
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.limits import Limits
+from femcheck.solved.case import Case, CaseResult, Solid, solve_case, stopped
 
 __all__ = ["PointKey", "PointWork"]
 
@@ -18,7 +18,7 @@ PointKey = tuple[int, int]
 
 @dataclass
 class PointWork:
-    """What is to be solved; see `beamopt.study.work`.
+    """What is to be solved; see `beamopt.base.tasks`.
 
     solids : of one mesh; each begins at the shapes of the one before.
     pressures : (n, 3) [kPa]. limits : of a case.

@@ -7,13 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.brief import Brief
-from beamopt.design import Design
-from beamopt.workspace import pressure_grid
+from beamopt.base.arrays import FloatArray
+from beamopt.base.brief import Brief
+from beamopt.scene.design import Design
+from beamopt.target.workspace import pressure_grid
 from femcheck.check.options import CheckOptions
-from femcheck.check.subject import LoadedDesignError, Subject, check_unloaded
 from femcheck.prediction.options import PredictionOptions
+from femcheck.solved.subject import LoadedDesignError, Subject, check_unloaded
 
 __all__ = ["LawChoice", "Question"]
 

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.ended import FOUND, Ended
 from femcheck.models.question import Question
 

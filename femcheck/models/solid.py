@@ -10,12 +10,11 @@ from functools import partial
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
-from beamopt.study.pool import in_process, processes
-from beamopt.study.work import solve_all
-from beamopt.workspace import node_index
-from femcheck.check.case import CaseResult, Solid
+from beamopt.base.arrays import FloatArray
+from beamopt.base.processes import in_process, processes
+from beamopt.base.tasks import solve_all
+from beamopt.scene.design import Design
+from beamopt.target.workspace import node_index
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Schedule
 from femcheck.check.stage import Stage
@@ -36,6 +35,7 @@ from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import Ray, rays_of
 from femcheck.prediction.work import RayKey, RayWork
 from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
+from femcheck.solved.case import CaseResult, Solid
 
 __all__ = ["SolidModel"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.path import PathPoint
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.equilibrium import Equilibrium

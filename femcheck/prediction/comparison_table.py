@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.files import csv_text
+from beamopt.base.arrays import FloatArray
+from beamopt.storage.writing import csv_text
 from femcheck.check.tables import COMPARE, both, cells, plain
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.prediction import Prediction

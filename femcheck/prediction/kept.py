@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from femcheck.check.store import read_arrays, write_arrays
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.ray_trace import RayResult
+from femcheck.solved.store import read_arrays, write_arrays
 
 __all__ = ["ray_file", "read_ray", "write_ray"]
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from beamopt.actuator import Actuator
-from beamopt.brief import changed_fields
-from beamopt.errors import InputError
-from femcheck.check.solid_options import SolidOptions
+from beamopt.base.brief import changed_fields
+from beamopt.base.errors import InputError
+from beamopt.scene.actuator import Actuator
 from femcheck.material.catalogue import law_by_name, modulus_of
 from femcheck.material.fibre import Thread
 from femcheck.material.law import Law
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solid.winding import Wound
+from femcheck.solved.solid_options import SolidOptions
 
 __all__ = ["WOUND", "PredictionOptions"]
 

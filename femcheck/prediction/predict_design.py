@@ -10,15 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-import femcheck.picture as picture
-from beamopt.arrays import FloatArray
+import femcheck.solved.picture as picture
+from beamopt.base.arrays import FloatArray
+from beamopt.base.processes import processes
+from beamopt.base.tasks import solve_all
 from beamopt.plot.style import save_figure
-from beamopt.study.pool import processes
-from beamopt.study.work import solve_all
-from femcheck.check.case import Solid
-from femcheck.check.folder import CheckFolder
-from femcheck.check.meshes import heights_of, section_meshes
-from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
 from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -31,6 +27,10 @@ from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import rays_of
 from femcheck.prediction.tables import tables_of
 from femcheck.prediction.work import RayKey, RayWork
+from femcheck.solved.case import Solid
+from femcheck.solved.folder import CheckFolder
+from femcheck.solved.meshes import heights_of, section_meshes
+from femcheck.solved.subject import Subject
 
 __all__ = ["predict_design"]
 

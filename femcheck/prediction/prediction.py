@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.brief import Brief
-from femcheck.check.beside_beam import BesideBeam
-from femcheck.check.case import Solid
-from femcheck.check.subject import Subject
+from beamopt.base.arrays import FloatArray
+from beamopt.base.brief import Brief
 from femcheck.continuation.outcome import Status
 from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -25,6 +22,9 @@ from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import Ray
 from femcheck.prediction.two_meshes import Agreement, RayEnds, SafeBox, safe_box
 from femcheck.prediction.work import RayKey
+from femcheck.solved.beside_beam import BesideBeam
+from femcheck.solved.case import Solid
+from femcheck.solved.subject import Subject
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -78,7 +78,7 @@ class Prediction(BesideBeam):
 
     def to_frame(self) -> DataFrame:
         """Tips of solid and beam (`compare.csv`), as a data frame (needs pandas)."""
-        from beamopt.frames import frame_of
+        from beamopt.storage.frames import frame_of
         from femcheck.prediction.comparison_table import compare_csv
 
         return frame_of(compare_csv(self))

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from femcheck.check.case import Solid, workshop
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.mode import LOCAL
 from femcheck.continuation.outcome import Statistics, Status
@@ -16,6 +15,7 @@ from femcheck.continuation.trace import PathSteps
 from femcheck.prediction.answer import Answer, read_off
 from femcheck.prediction.rays import Ray
 from femcheck.solid.equilibrium import Equilibrium
+from femcheck.solved.case import Solid, workshop
 
 __all__ = ["RayResult", "RayTask", "stopped_ray", "trace_ray"]
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.files import csv_text, json_text
+from beamopt.base.arrays import FloatArray
+from beamopt.storage.writing import csv_text, json_text
 from femcheck.check.tables import DIGITS, both, cells, plain
 from femcheck.continuation.ended import Ended
 from femcheck.material.catalogue import constants_of

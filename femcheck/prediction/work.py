@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
-from femcheck.check.case import Solid
 from femcheck.continuation.limits import Limits
 from femcheck.prediction.ray_trace import RayResult, RayTask, stopped_ray, trace_ray
 from femcheck.prediction.rays import Ray
+from femcheck.solved.case import Solid
 
 __all__ = ["RayKey", "RayWork"]
 
@@ -19,7 +19,7 @@ RayKey = tuple[str, int]
 
 @dataclass
 class RayWork:
-    """What is to be traced; see `beamopt.study.work`.
+    """What is to be traced; see `beamopt.base.tasks`.
 
     solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, and
     those that are `asked` for, for an estimate of the mesh's error. limits : of a ray.

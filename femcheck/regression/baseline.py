@@ -8,12 +8,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from beamopt.errors import InputError
-from beamopt.files import check_replaceable, json_text, write_atomic
-from beamopt.folder import FolderKind
-from beamopt.input_file import read_json
-from beamopt.model import Model, Number, parse
-from beamopt.model import quantity as described
+from beamopt.base.errors import InputError
+from beamopt.storage.checked_keys import Model, Number, parse
+from beamopt.storage.checked_keys import quantity as described
+from beamopt.storage.input_file import read_json
+from beamopt.storage.result_folder import FolderKind
+from beamopt.storage.writing import check_replaceable, json_text, write_atomic
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import OLD_FAULTS, ended_of
 from femcheck.regression.held import LADDER, Held, Row

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
-from beamopt.folder import design_file
-from beamopt.named import name_of
-from beamopt.scene import load_scene
-from femcheck.check.subject import sealed_copy
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.named import name_of
+from beamopt.scene.scene import load_scene
+from beamopt.storage.result_folder import design_file
 from femcheck.regression.held import LADDER
+from femcheck.solved.subject import sealed_copy
 
 __all__ = ["BUNDLED", "HeldDesign", "design_digest", "find_design"]
 

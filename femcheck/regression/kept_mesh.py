@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.design import Design
-from beamopt.errors import InputError
-from beamopt.files import check_replaceable, replacing
-from beamopt.input_file import MOST_MESH, check_regular, read_bytes
+from beamopt.base.errors import InputError
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
 from beamopt.outline.ring import usual_sagitta
+from beamopt.scene.design import Design
+from beamopt.storage.input_file import MOST_MESH, check_regular, read_bytes
+from beamopt.storage.writing import check_replaceable, replacing
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure, read_section
 from femcheck.mesh.section_mesh import SectionMesh

@@ -7,9 +7,9 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 from functools import partial
 
-from beamopt.errors import InputError
-from beamopt.study.pool import in_process, processes
-from beamopt.study.work import solve_all
+from beamopt.base.errors import InputError
+from beamopt.base.processes import in_process, processes
+from beamopt.base.tasks import solve_all
 from femcheck.regression.held import LADDER, Held
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.rods import held_rods
@@ -77,7 +77,7 @@ def measure_all(
 
 @dataclass
 class _PartWork:
-    """What is to be measured; see `beamopt.study.work`."""
+    """What is to be measured; see `beamopt.base.tasks`."""
 
     designs: Sequence[HeldDesign]
     estimate: bool

@@ -53,10 +53,10 @@ def hold_design(request: pytest.FixtureRequest) -> HoldDesign:
 
 def _hold(file: Path, folder: Path, rungs: Collection[str] | None, update: bool) -> str:
     """Compare, or write; what is wrong, "" where nothing is."""
-    from beamopt.errors import InputError
+    from beamopt.base.errors import InputError
     from femcheck.regression.baseline import baseline_file
     from femcheck.regression.held_design import find_design
-    from femcheck.regression.run import ContradictionError, regress, update_baseline
+    from femcheck.regression.regression import ContradictionError, regress, update_baseline
 
     _check_rungs(rungs)
     try:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from glob import escape
 from pathlib import Path
 
-from beamopt.errors import InputError
-from beamopt.files import json_text, write_atomic
-from beamopt.folder import claimed, clear_leftovers
-from beamopt.provenance import provenance
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import provenance
+from beamopt.storage.result_folder import claimed, clear_leftovers
+from beamopt.storage.writing import json_text, write_atomic
 from femcheck.regression.agreement import contradictions
 from femcheck.regression.baseline import (
     KIND,

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
+from beamopt.scene.design import Design
 from beamopt.section.moments import Moments
 from femcheck.models.beam import on_grid
 from femcheck.regression.held import Held, Row, columns, rounding

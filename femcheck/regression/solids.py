@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.outline import Outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.moments import Moments
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID
-from femcheck.check.case import Case, CaseResult, Solid, solve_case, workshop
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import Ended
 from femcheck.material.rigid_section import RigidSection
@@ -31,6 +30,7 @@ from femcheck.regression.rods import SAFETY
 from femcheck.regression.sections import held_moments
 from femcheck.solid.elements import DEFAULT_ELEMENT
 from femcheck.solid.winding import Wound
+from femcheck.solved.case import Case, CaseResult, Solid, solve_case, workshop
 
 __all__ = ["LAWS", "held_limit", "held_meshes", "held_solid"]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from beamopt.input_file import read_text
+from beamopt.storage.input_file import read_text
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.embedding import Download, download
 from femcheck.report.wording import Badge, duration, number

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.files import cell_text
-from beamopt.input_file import read_json, read_text
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import read_json, read_text
+from beamopt.storage.writing import cell_text
 
 __all__ = ["Record", "Table", "read_record", "read_table"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamopt.arrays import IndexArray
+from beamopt.base.arrays import IndexArray
 from beamopt.plot.section import draw_section
 from beamopt.plot.style import (
     ASIDE_COLOUR,
@@ -17,9 +17,9 @@ from beamopt.plot.style import (
     new_figure,
     styled,
 )
-from beamopt.workspace import Workspace
-from femcheck.check.subject import Subject
+from beamopt.target.workspace import Workspace
 from femcheck.report.solid_run import Combinations
+from femcheck.solved.subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

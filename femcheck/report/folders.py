@@ -7,7 +7,7 @@ from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 
 __all__ = ["Folder", "Kind", "find_folders"]
 

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from beamopt.folder import design_file
-from beamopt.input_file import read_text
+from beamopt.storage.input_file import read_text
+from beamopt.storage.result_folder import design_file
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
 

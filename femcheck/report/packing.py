@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.report.shapes import Shapes
 from femcheck.report.surface import PARTS
 

@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
 
-from beamopt.errors import InputError
-from beamopt.input_file import read_text
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import read_text
 
 __all__ = ["SavedFigure", "read_figures", "shape_of"]
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
-from beamopt.errors import InputError
-from beamopt.input_file import MOST_MESH, check_regular
+from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.errors import InputError
 from beamopt.rod.arc import arc_centreline
-from beamopt.workspace import NODES
+from beamopt.storage.input_file import MOST_MESH, check_regular
+from beamopt.target.workspace import NODES
 from femcheck.mesh.files import DISPLACEMENT, TAGS, VTU_WEDGE
 from femcheck.prediction.rays import rays_of
 from femcheck.report.solid_run import Combinations, SolidRun

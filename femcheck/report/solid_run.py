@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.input_file import read_text
-from beamopt.workspace import NODES
-from femcheck.check.subject import LoadedDesignError, Subject
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.scene.design import load_design
+from beamopt.storage.input_file import read_text
+from beamopt.target.workspace import NODES
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import ended_of
 from femcheck.report.content import Record, Table, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
+from femcheck.solved.subject import LoadedDesignError, Subject
 
 __all__ = ["Combinations", "SolidRun", "read_solid_run"]
 

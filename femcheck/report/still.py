@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.style import DESIGN_COLOUR, MATERIAL_COLOUR, new_figure, styled
 from femcheck.report.packing import stretch_range
 from femcheck.report.shapes import Shapes

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 
 __all__ = ["PARTS", "TIP", "Surface", "surface_of"]
 

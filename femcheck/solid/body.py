@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.mesh.extrusion import Extrusion
 from femcheck.solid.continuum import Continuum
 from femcheck.solid.elements import ELEMENTS, ElementChoice

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.solid.facets import FacetShape
 
 __all__ = ["Continuum"]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.mesh.extrusion import Extrusion
 from femcheck.mesh.subdivision import subdivide
 

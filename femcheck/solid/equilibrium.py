@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.elements import add_element_forces, add_element_stiffness, deformation
 from femcheck.assembly.pattern import make_pattern, places_in
 from femcheck.assembly.reduction import UpperMatrix

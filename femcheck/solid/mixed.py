@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.assembly.saddle import VolumeColumns, add_volume_columns
 from femcheck.solid.continuum import Continuum

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.pattern import Pattern
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.solid.state import State

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.pattern import Pattern
 from femcheck.assembly.reduction import Reduction, UpperMatrix
 from femcheck.solid.body import Body

@@ -6,7 +6,7 @@ import numpy as np
 from skfem.element import ElementH1
 from skfem.refdom import RefWedge
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = ["ElementWedge18", "wedge_quadrature"]
 

@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.fibres import add_fibre_forces, add_fibre_stiffness, fibre_vectors
 from femcheck.assembly.pattern import Pattern, places_in
 from femcheck.material.fibre import Thread

@@ -7,8 +7,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from femcheck.check.subject import Subject
+from beamopt.base.arrays import FloatArray
+from femcheck.solved.subject import Subject
 
 __all__ = ["STILL", "BesideBeam"]
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
 from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.load_steps import LoadSteps

@@ -7,14 +7,20 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
-from beamopt.files import json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers, differences, own_subfolder
-from beamopt.input_file import read_bytes, read_json
-from beamopt.provenance import provenance
-from femcheck.check.case import Solid
-from femcheck.check.subject import Subject
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.base.provenance import provenance
+from beamopt.storage.input_file import read_bytes, read_json
+from beamopt.storage.result_folder import (
+    FolderKind,
+    claimed,
+    clear_leftovers,
+    differences,
+    own_subfolder,
+)
+from beamopt.storage.writing import json_text, write_atomic
+from femcheck.solved.case import Solid
+from femcheck.solved.subject import Subject
 
 __all__ = ["CheckFolder"]
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from femcheck.check.solid_options import SolidOptions
-from femcheck.check.subject import Subject
+from beamopt.base.arrays import FloatArray
 from femcheck.mesh.extrusion import stations
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
 from femcheck.mesh.section_mesh import SectionMesh
+from femcheck.solved.solid_options import SolidOptions
+from femcheck.solved.subject import Subject
 
 __all__ = ["heights_of", "layers_for", "section_meshes"]
 

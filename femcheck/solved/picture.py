@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.files import write_atomic
+from beamopt.base.arrays import FloatArray
 from beamopt.plot.style import SUPPLY_COLOURS
 from beamopt.rod.arc import arc_centreline
-from beamopt.scratch import scratch_folder
-from femcheck.check.case import Solid
-from femcheck.check.subject import Subject
+from beamopt.storage.scratch import scratch_folder
+from beamopt.storage.writing import write_atomic
+from femcheck.solved.case import Solid
+from femcheck.solved.subject import Subject
 
 __all__ = ["draw"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field
 
-from beamopt.brief import changed_fields
-from beamopt.errors import InputError
+from beamopt.base.brief import changed_fields
+from beamopt.base.errors import InputError
 from femcheck.continuation.limits import Limits
 from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher

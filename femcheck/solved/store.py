@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from beamopt.files import write_atomic
-from beamopt.input_file import MOST_MESH, read_bytes
+from beamopt.storage.input_file import MOST_MESH, read_bytes
+from beamopt.storage.writing import write_atomic
 
 __all__ = ["read_arrays", "write_arrays"]
 

@@ -8,15 +8,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.brief import Brief
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
+from beamopt.base.brief import Brief
 from beamopt.outline.faults import Fault, FaultKind, Severity
 from beamopt.outline.outline import Outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import LinearResponse, linear_response
+from beamopt.scene.design import Design
 from beamopt.section.moments import Moments
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 from femcheck.mesh.section_mesh import SectionMesh
 
 __all__ = [

@@ -9,8 +9,8 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from beamopt.errors import InputError
-from beamopt.line_journal import LineJournal
+from beamopt.base.errors import InputError
+from beamopt.storage.line_journal import LineJournal
 from femcheck.stability.axis import Axis
 from femcheck.stability.ending import Ending
 from femcheck.stability.solve import CellResult, TraceResult

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from femcheck.check.case import Case, CaseResult, Solid, solve_case, workshop
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.path import PathPoint
 from femcheck.prediction.answer import read_off
 from femcheck.prediction.ray_trace import RayTask, trace_ray
 from femcheck.prediction.rays import Ray
+from femcheck.solved.case import Case, CaseResult, Solid, solve_case, workshop
 from femcheck.stability.ending import Ending, ending_of
 from femcheck.stability.specimen import Absent, Specimen, beam_tips, solid_of
 

@@ -8,14 +8,13 @@ from math import ceil
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.build import build_outline
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.drawing import Shape
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
-from femcheck.check.case import Solid
 from femcheck.material.fibre import Thread
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.mesh.extrusion import stations
@@ -23,6 +22,7 @@ from femcheck.mesh.geo import SectionSizes
 from femcheck.mesh.gmsh_section import Mesher, MeshFailure
 from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
 from femcheck.solid.winding import Wound
+from femcheck.solved.case import Solid
 from femcheck.stability.ending import Ending
 
 __all__ = ["Absent", "Specimen", "beam_tips", "solid_of"]

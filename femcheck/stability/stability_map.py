@@ -8,15 +8,15 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
-from beamopt.errors import InputError
-from beamopt.files import json_text, write_atomic
-from beamopt.folder import FolderKind, claimed, clear_leftovers
-from beamopt.input_file import read_json
+from beamopt.base.errors import InputError
+from beamopt.base.processes import processes
+from beamopt.base.provenance import provenance, thread_settings
+from beamopt.base.tasks import solve_all
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance, thread_settings
-from beamopt.study.pool import processes
-from beamopt.study.work import solve_all
-from femcheck.check.folder import PACKAGES
+from beamopt.storage.input_file import read_json
+from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.writing import json_text, write_atomic
+from femcheck.solved.folder import PACKAGES
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of

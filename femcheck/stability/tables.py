@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from beamopt.files import csv_text
+from beamopt.storage.writing import csv_text
 from femcheck.stability.axis import Axis
 from femcheck.stability.ending import Ending
 from femcheck.stability.found import AxisFound, Row, share_of_cell

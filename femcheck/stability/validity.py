@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.stability.solve import TRACK
 
 __all__ = ["AGREE", "Interval", "intervals_of", "stable_part"]

@@ -1,4 +1,4 @@
-"""All cells and paths of the map as independent tasks; see `beamopt.study.work`."""
+"""All cells and paths of the map as independent tasks; see `beamopt.base.tasks`."""
 
 from __future__ import annotations
 

@@ -9,8 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from beamopt.aim import Aim
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
 from beamopt.plot.style import ASIDE_COLOUR, SERIES_COLOURS, new_figure, styled
 from beamopt.rod.ladder import RodModel
 from beamopt.rod.response import linear_response
@@ -20,7 +19,8 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import moments_of
 from beamopt.section.raster import raster
 from beamopt.section.walls import add_walls
-from beamopt.workspace import pressure_grid
+from beamopt.target.aim import Aim
+from beamopt.target.workspace import pressure_grid
 from tests.bench.measured import Measured, save_growth
 from tests.bench.reference import Reference
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.solid.body import Body
 

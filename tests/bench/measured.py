@@ -15,10 +15,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from beamopt.files import csv_text, json_text, write_atomic
+from beamopt.base.provenance import provenance, thread_settings
 from beamopt.plot.style import save_figure
-from beamopt.provenance import provenance, thread_settings
-from femcheck.check.folder import PACKAGES
+from beamopt.storage.writing import csv_text, json_text, write_atomic
+from femcheck.solved.folder import PACKAGES
 
 QUICK = bool(os.environ.get("BENCH_QUICK"))
 """Small sizes, to try a benchmark itself: its report is kept apart from the measured ones."""

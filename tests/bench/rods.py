@@ -26,13 +26,13 @@ from itertools import product
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.workload import workload_of
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.workload import workload_of
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.ladder import Piece
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 from tests.bench.measured import QUICK, Measured
 from tests.bench.rods_bvp import Start, compiled_tips, plain_tips
 from tests.bench.rods_elastica import Clamp, Relaxation, fewest_elements, installed

@@ -14,9 +14,9 @@ from enum import Enum
 import numpy as np
 from scipy.integrate import solve_bvp
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded, at_rest, loaded_rod
-from beamopt.chart.comparators.quaternion_form import arcs_at_rest, boundary, jacobians, slopes
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
+from beamopt.comparators.quaternion_form import arcs_at_rest, boundary, jacobians, slopes
 from beamopt.rod.rod import STRAIGHT, Rod
 
 __all__ = ["Start", "compiled_tips", "plain_tips"]

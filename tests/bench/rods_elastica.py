@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.rod import Rod
 
 __all__ = ["Clamp", "Relaxation", "fewest_elements", "installed"]

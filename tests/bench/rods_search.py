@@ -9,11 +9,11 @@ from functools import partial
 import numpy as np
 
 import beamopt
-from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.judge import Judge
-from beamopt.result import Optimisation
+from beamopt.judge.judge import Judge
 from beamopt.rod.ladder import SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
+from beamopt.search.algorithm import GeneticAlgorithm
+from beamopt.search.result import Optimisation
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes, phenotypes
 from beamopt.section.saint_venant import SaintVenant, section_saint_venant

@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.workload import Workload, workload_of
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.workload import Workload, workload_of
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.rod import Rod
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 
 __all__ = ["SCENES", "SHARE", "Workspace", "as_shipped", "fastest", "workspace"]
 

@@ -9,9 +9,9 @@ from contextlib import suppress
 from dataclasses import astuple, dataclass
 
 from beamopt.bound.certificate import quick_certificate
-from beamopt.files import csv_text, write_atomic
-from beamopt.line_journal import LineJournal
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.storage.line_journal import LineJournal
+from beamopt.storage.writing import csv_text, write_atomic
 from tests.bench.measured import QUICK, REPORTS, ROOT, Measured, save_growth
 from tests.bench.search_figure import search_figure
 from tests.bench.search_methods import METHODS, PAPER, Method, with_search

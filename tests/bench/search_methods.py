@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.evolve.run import run
-from beamopt.evolve.variation import Variation
+from beamopt.base.arrays import FloatArray
+from beamopt.base.random_streams import Purpose, stream
 from beamopt.refine.refine import refine
-from beamopt.scene import Scene
-from beamopt.search_settings import Search
+from beamopt.scene.scene import Scene
+from beamopt.scene.search_keys import Search
+from beamopt.search.loop import run
+from beamopt.search.variation import Variation
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.streams import Purpose, stream
 from tests.bench.search_tape import TapedJudge
 
 __all__ = ["METHODS", "Method"]

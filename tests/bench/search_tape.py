@@ -11,7 +11,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from beamopt.judge import Judge, Verdict
+from beamopt.judge.judge import Judge, Verdict
 from beamopt.refine import annealing
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import Phenotypes

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.material.law import Law
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.material.rigid_section import RigidSection

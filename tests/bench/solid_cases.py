@@ -6,11 +6,11 @@ import time
 
 import numpy as np
 
-from beamopt.actuator import Actuator
-from beamopt.arrays import FloatArray
-from beamopt.chambers import DrawnChamber
-from beamopt.design import Design, Grid
-from beamopt.seal import Seal
+from beamopt.base.arrays import FloatArray
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.design import Design, Grid
+from beamopt.scene.drawn_chambers import DrawnChamber
+from beamopt.scene.seal_keys import Seal
 from femcheck.continuation.direct import DirectSolver, direct_solver
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.shape import Shapes

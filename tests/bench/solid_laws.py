@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamopt.design import Design
+from beamopt.scene.design import Design
 from femcheck.continuation.direct import direct_solver
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes

@@ -6,7 +6,7 @@ from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.phenotype import phenotypes
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 from tests.bench.evaluation import judge_for
 from tests.bench.reference import Reference
 

@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
 from beamopt.refine.refine import refine
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.scene import Scene, load_scene
 from tests.bench.search import Compared, at_evaluations, at_seconds, curve, table
 from tests.bench.search_figure import LOOKS, search_figure
 from tests.bench.search_methods import METHODS, random_starts, with_search

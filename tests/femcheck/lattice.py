@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import Extrusion, extrude, stations
 from femcheck.mesh.section_mesh import SectionMesh

@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended
 from femcheck.continuation.outcome import Status

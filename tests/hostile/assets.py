@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.bundled import bundled_scenes
-from beamopt.chart.journal import Journal
-from beamopt.chart.sampling import METHODS
-from beamopt.optimisation import optimize
-from beamopt.pareto.run import find_front
-from beamopt.scene import load_scene
+from beamopt.pareto.find_front import find_front
+from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.sampling import METHODS
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
 from tests.femcheck.report.folders import figure_folder
 
 SCENES = bundled_scenes()["random-section"].parent

@@ -46,10 +46,10 @@ def warm_up() -> None:
     import meshio
     import scipy.spatial  # noqa: F401
 
-    from beamopt.bundled import bundled_scenes
-    from beamopt.design import load_design
     from beamopt.plot.figures import design_figure
     from beamopt.plot.style import figure_bytes
+    from beamopt.scene.bundled import bundled_scenes
+    from beamopt.scene.design import load_design
 
     file = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
     figure_bytes(design_figure(load_design(file)), "svg", "png")

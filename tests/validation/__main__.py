@@ -21,8 +21,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from beamopt.files import csv_text, write_atomic
-from beamopt.provenance import thread_settings
+from beamopt.base.provenance import thread_settings
+from beamopt.storage.writing import csv_text, write_atomic
 from tests.validation.suites import SUITES
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -13,12 +13,12 @@ from functools import partial
 
 import numpy as np
 
-from beamopt.actuator import Actuator
-from beamopt.chambers import DrawnChamber
-from beamopt.design import Design, Grid
-from beamopt.scene import load_scene
-from beamopt.seal import Seal
-from beamopt.workspace import pressure_grid
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.design import Design, Grid
+from beamopt.scene.drawn_chambers import DrawnChamber
+from beamopt.scene.scene import load_scene
+from beamopt.scene.seal_keys import Seal
+from beamopt.target.workspace import pressure_grid
 from femcheck.accuracy.ending import Ending
 from femcheck.accuracy.within import answer_within
 from femcheck.check.options import CheckOptions

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamopt.design import load_design
 from beamopt.rod.arc import arc_tip_jacobian_by_response, arc_tips
 from beamopt.rod.response import linear_response
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
 from beamopt.section.moments import Moments
 from tests.validation.check import Check, Row
 from tests.validation.paper_odes import shoot

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamopt.judge import Judge, Status
-from beamopt.scene import load_scene
+from beamopt.judge.judge import Judge, Status
+from beamopt.scene.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
 from tests.validation.check import Check, Row
 

@@ -19,9 +19,9 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, load_design
-from beamopt.export.run import export_design
+from beamopt.export.export_design import export_design
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from femcheck.mesh.extrusion import extrude, stations

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.assembly.pattern import Pattern, make_pattern, places_in
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.assembly.walls import add_wall_forces, add_wall_stiffness, wall_volumes

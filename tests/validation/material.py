@@ -12,11 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.chambers import DrawnChamber
-from beamopt.design import Design
-from femcheck.check.case import Solid, rest_slopes, workshop
-from femcheck.check.subject import Subject, slender_copy
+from beamopt.base.arrays import FloatArray
+from beamopt.scene.design import Design
+from beamopt.scene.drawn_chambers import DrawnChamber
 from femcheck.continuation.outcome import Status
 from femcheck.material.fibre import Thread
 from femcheck.material.law import Law
@@ -27,6 +25,8 @@ from femcheck.mesh.gmsh_section import Mesher, MeshFailure
 from femcheck.prediction.ray_trace import RayResult, RayTask, trace_ray
 from femcheck.prediction.rays import Ray
 from femcheck.solid.winding import Wound
+from femcheck.solved.case import Solid, rest_slopes, workshop
+from femcheck.solved.subject import Subject, slender_copy
 from tests.validation.check import Check, Row
 from tests.validation.solid import drawn, three_chambers
 

@@ -11,9 +11,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from beamopt.optimisation import optimize
-from beamopt.pareto.run import find_front
-from beamopt.scene import load_scene
+from beamopt.pareto.find_front import find_front
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
 from tests.validation.check import Check, Row
 
 __all__ = ["checks"]

@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.design import Design, load_design
-from beamopt.evolve.recombination import fixed
 from beamopt.refine.refine import RefineStatus
-from beamopt.refinement import refine_design
-from beamopt.scene import Scene, load_scene
+from beamopt.refine.refine_design import refine_design
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.recombination import fixed
 from beamopt.section.cell_owners import NEAR
 from beamopt.section.feature_points import FeaturePoints
 from tests.validation.check import Check, Row

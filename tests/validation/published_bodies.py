@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.continuation.direct import DirectSolver, direct_solver
 from femcheck.material.law import Law
 from femcheck.mesh.extrusion import Extrusion, extrude

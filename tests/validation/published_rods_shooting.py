@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 
 __all__ = ["LeeLimit", "lee_limit"]
 

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.bound.certificate import certificate
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 from beamopt.study.plan import TARGETS, Plan
-from beamopt.study.run import run_study
+from beamopt.study.study import run_study
 from beamopt.study.table import RefinedOutcome
 from tests.validation.check import Check, Row
 

@@ -60,14 +60,14 @@ FAULTS = (
     ),
     Fault(
         "a winding forgotten",
-        "femcheck.check.case",
+        "femcheck.solved.case",
         "winding = wind(body, *self.wound) if self.wound else None",
         "winding = None",
         "solid, wound",
     ),
     Fault(
         "a load's frame transposed",
-        "beamopt.actuator",
+        "beamopt.scene.actuator",
         "to_base = self.mount.T",
         "to_base = self.mount",
         "loads",

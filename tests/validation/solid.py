@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.actuator import Actuator
-from beamopt.chambers import DrawnChamber
-from beamopt.design import Design, Grid
-from beamopt.optimisation import optimize
-from beamopt.scene import load_scene
-from beamopt.seal import Seal
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.design import Design, Grid
+from beamopt.scene.drawn_chambers import DrawnChamber
+from beamopt.scene.scene import load_scene
+from beamopt.scene.seal_keys import Seal
+from beamopt.search.optimize import optimize
+from femcheck.check.check_design import check_design
 from femcheck.check.comparison import Comparison
 from femcheck.check.options import CheckOptions
-from femcheck.check.run import check_design
-from femcheck.check.subject import Subject
 from femcheck.mesh.geo import SectionSizes
+from femcheck.solved.subject import Subject
 from tests.validation.check import Check, Row
 
 DESIGNS = 5

@@ -11,7 +11,7 @@ from beamopt.rod.response import linear_response
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 from tests.validation.check import Check, Row
 
 GRID = PolarGrid()

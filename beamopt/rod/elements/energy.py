@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
 from beamopt.rod.elements.group import (
     inverse_tangent,
     logarithm,

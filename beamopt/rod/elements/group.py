@@ -15,8 +15,8 @@ import math
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
 
 __all__ = [
     "exponential",

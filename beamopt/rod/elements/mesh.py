@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.elements.energy import Mesh, State
 from beamopt.rod.elements.group import exponential
 from beamopt.rod.law import SectionLaw, cross

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.rod.elements.energy import Mesh, State
 from beamopt.rod.elements.group import exponential, logarithm
 from beamopt.rod.elements.mesh import at_rest, meshed

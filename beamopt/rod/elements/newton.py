@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.compiled import compiled
+from beamopt.base.arrays import FloatArray
+from beamopt.base.compiled import compiled
 from beamopt.rod.elements.blocks import constrain, eliminate, substitute
 from beamopt.rod.elements.energy import (
     Blocks,

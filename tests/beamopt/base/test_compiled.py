@@ -11,14 +11,14 @@ import pytest
 import beamopt
 
 INNER = """
-from beamopt.compiled import compiled
+from beamopt.base.compiled import compiled
 
 @compiled
 def inner(x: float) -> float:
     return x + 1
 """
 OUTER = """
-from beamopt.compiled import compiled
+from beamopt.base.compiled import compiled
 from beamopt.section.inner import inner
 
 @compiled
@@ -54,9 +54,10 @@ def copied(folder: Path) -> Path:
     """A package of two kernels of its own room, one that calls the other."""
     package = folder / "beamopt"
     source = Path(str(beamopt.__file__)).parent
-    (package / "section").mkdir(parents=True)
-    shutil.copy(source / "compiled.py", package)
-    for name in ("__init__.py", "section/__init__.py"):
+    for folder in ("base", "section"):
+        (package / folder).mkdir(parents=True)
+    shutil.copy(source / "base/compiled.py", package / "base")
+    for name in ("__init__.py", "base/__init__.py", "section/__init__.py"):
         (package / name).touch()
     (package / "section" / "inner.py").write_text(INNER)
     (package / "section" / "outer.py").write_text(OUTER)

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
-from beamopt.errors import NotComputedError
-from beamopt.study.pool import InProcess, processes
-from beamopt.study.work import Tasks, check_none_lost, solve_all
+from beamopt.base.errors import NotComputedError
+from beamopt.base.processes import InProcess, processes
+from beamopt.base.tasks import Tasks, check_none_lost, solve_all
 
 
 def die_once(marks: Path, number: int) -> int:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.bound.wanted import Wanted
 from beamopt.rod.response import linear_response
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 
 GRID = PolarGrid(radial=32, angular=90)
 LENGTH, YOUNG = 100.0, 300.0

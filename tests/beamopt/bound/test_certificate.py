@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.aim import Aim
 from beamopt.bound.certificate import BoundStatus, certificate, quick_certificate
-from beamopt.bound_folder import bound_summary
-from beamopt.bundled import bundled_scenes
+from beamopt.bound.folder import bound_summary
 from beamopt.cli.application import run
 from beamopt.cli.bound import gap_text
-from beamopt.optimisation import optimize
 from beamopt.plot.bound import bound_figure
 from beamopt.plot.style import save_figure
-from beamopt.scene import load_scene
-from beamopt.target import Target
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
+from beamopt.target.aim import Aim
+from beamopt.target.target import Target
 from tests.validation.resume import content
 
 SCENES = bundled_scenes()

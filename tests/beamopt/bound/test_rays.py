@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.bound.cells import Box, RaySum, ray_minimum
 from beamopt.bound.prices import FREE_GAP, GAP, ray_bound
 from beamopt.bound.rays import RayParts, rays_of
 from beamopt.bound.response import response_bound
 from beamopt.bound.wanted import Wanted
 from beamopt.rod.arc import arc_tip_jacobian, arc_tips
-from tests.bound.cases import PRESSURES, bowl, random_response, wanted
+from tests.beamopt.bound.cases import PRESSURES, bowl, random_response, wanted
 
 SMALL = Box((-0.3, 1.0), np.pi)
 

@@ -11,7 +11,7 @@ from beamopt.bound.fit import ArcFit
 from beamopt.bound.response import arc_strains, response_bound
 from beamopt.bound.wanted import Wanted
 from beamopt.rod.arc import arc_tips
-from tests.bound.cases import LENGTH, PRESSURES, bowl, random_response, wanted
+from tests.beamopt.bound.cases import LENGTH, PRESSURES, bowl, random_response, wanted
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.bound.polytope import Cuts, least_squares_within, nearest_point
 from beamopt.bound.response import response_bound
 from beamopt.bound.ring import NUMBERS, RingMoments, ring_response
@@ -14,7 +14,7 @@ from beamopt.bound.wanted import Wanted
 from beamopt.rod.response import linear_response
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.grid import PolarGrid
-from tests.bound.cases import GRID, YOUNG, bowl, random_response, random_section, wanted
+from tests.beamopt.bound.cases import GRID, YOUNG, bowl, random_response, random_section, wanted
 
 RING = RingMoments.of(GRID)
 

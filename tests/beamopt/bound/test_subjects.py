@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.bound.folder import KIND
 from beamopt.bound.ring import RingMoments
 from beamopt.bound.ring_bound import ring_bound
-from beamopt.bound_folder import KIND
-from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
-from beamopt.folder import LOCK
-from tests.bound.cases import GRID, YOUNG, wanted
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.storage.result_folder import LOCK
+from tests.beamopt.bound.cases import GRID, YOUNG, wanted
 
 TABLE = bundled_scenes()["hand-drawn-workspace"].with_name("hand_drawn_workspace.csv")
 HEADER = "p1,p2,p3,x,y,z"

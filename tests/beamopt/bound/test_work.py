@@ -19,8 +19,8 @@ from beamopt.bound.wanted import Wanted
 from beamopt.bound.work import ROUND, Work
 from beamopt.cli import progress
 from beamopt.cli.application import run
-from beamopt.scene import load_scene
-from tests.bound.cases import bowl, random_response, wanted
+from beamopt.scene.scene import load_scene
+from tests.beamopt.bound.cases import bowl, random_response, wanted
 
 GRID = load_scene("random-section").grid.build()
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from beamopt.chart.comparators.collocation import Collocation
-from beamopt.chart.comparators.multiple_shooting import MultipleShooting
-from beamopt.chart.comparators.shooting import Shooting
-from beamopt.chart.comparators.sweep import Stepper
-from beamopt.chart.workload import workload_of
+from beamopt.comparators.collocation import Collocation
+from beamopt.comparators.multiple_shooting import MultipleShooting
+from beamopt.comparators.shooting import Shooting
+from beamopt.comparators.sweep import Stepper
+from beamopt.comparators.workload import workload_of
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.solution import Method
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 
 CASES = [0, 13, 26]
 HIGH_ORDER: list[tuple[Method, int]] = [

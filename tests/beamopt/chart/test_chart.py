@@ -10,20 +10,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.shooting import Shooting
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
+from beamopt.chart.chart import HEADER, Chart, run_chart
 from beamopt.chart.measure import Limits, Measured, measure_rungs, reference_of
-from beamopt.chart.methods import DEFAULT_RESOLUTIONS, Adaptive, all_methods, limited
-from beamopt.chart.run import HEADER, Chart, run_chart
-from beamopt.chart.workload import workload_of
 from beamopt.cli.application import run
-from beamopt.errors import InputError
+from beamopt.comparators.methods import DEFAULT_RESOLUTIONS, Adaptive, all_methods, limited
+from beamopt.comparators.shooting import Shooting
+from beamopt.comparators.workload import workload_of
 from beamopt.rod.ladder import Rung
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import Rod
 from beamopt.rod.solution import Method, RodSolution
 from beamopt.rod.status import RodStatus
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 
 TWO: tuple[Method, ...] = (
     StrainModes(resolutions=(2, 4)),
@@ -192,8 +192,8 @@ def test_the_command_says_who_is_fastest(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With two methods in the place of all."""
-    monkeypatch.setattr("beamopt.chart.run.all_methods", lambda parents: TWO)
-    monkeypatch.setattr("beamopt.chart.run.Limits", lambda: ONCE)
+    monkeypatch.setattr("beamopt.chart.chart.all_methods", lambda parents: TWO)
+    monkeypatch.setattr("beamopt.chart.chart.Limits", lambda: ONCE)
     assert run(["chart", "gravity", "--out", str(tmp_path / "chart")]) == 0
     said = capsys.readouterr().out
     assert "gravity: fastest to 0.1 mm" in said

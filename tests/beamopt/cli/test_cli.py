@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.optimize import optimize
 from tests.validation.resume import command, content
 
 SHORT = ("--set", "search.generations=2")

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.chambers import DrawnChamber
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
 from beamopt.outline.drawn import outside, too_thin
 from beamopt.outline.faults import FaultKind, Severity, summaries
-from beamopt.seal import Seal
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.drawn_chambers import DrawnChamber
+from beamopt.scene.seal_keys import Seal
 from beamopt.section.drawing import RingPiece
 from beamopt.section.grid import PolarGrid
 from femcheck.cli.application import run as run_femcheck
-from tests.export.samples import drawn, random_section
+from tests.beamopt.export.samples import drawn, random_section
 
 SEALED = Seal(skin=1.0, wall=0.9, rounding=0.5, smallest_chamber=3.0)
 ROUND = [

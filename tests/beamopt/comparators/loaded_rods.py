@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.collocation import Collocation
-from beamopt.chart.comparators.multiple_shooting import MultipleShooting
-from beamopt.chart.comparators.shooting import Shooting
-from beamopt.chart.comparators.sweep import Stepper
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.collocation import Collocation
+from beamopt.comparators.multiple_shooting import MultipleShooting
+from beamopt.comparators.shooting import Shooting
+from beamopt.comparators.sweep import Stepper
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import Base, LineLoad, PointLoad, Rod, Segment
 from beamopt.rod.solution import Method, RodSolution

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from beamopt.chart.comparators.collocation import Collocation
-from beamopt.chart.comparators.multiple_shooting import MultipleShooting
-from beamopt.chart.comparators.shooting import Shooting
+from beamopt.comparators.collocation import Collocation
+from beamopt.comparators.multiple_shooting import MultipleShooting
+from beamopt.comparators.shooting import Shooting
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import Base, PointLoad, Rod, Tip
 from beamopt.rod.solution import Method
 from beamopt.rod.status import RodStatus
-from tests.chart.comparators.loaded_rods import (
+from tests.beamopt.comparators.loaded_rods import (
     MAGNUS,
     METHODS,
     NAMES,

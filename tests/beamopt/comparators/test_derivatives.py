@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.loaded import Loaded, loaded_rod
-from beamopt.chart.comparators.quaternion_form import boundary, jacobians, slopes
-from beamopt.chart.comparators.sweep import WORK, advance, leftover, segments_of
-from tests.chart.comparators.loaded_rods import MAGNUS, RUNGE_KUTTA, tangle
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.loaded import Loaded, loaded_rod
+from beamopt.comparators.quaternion_form import boundary, jacobians, slopes
+from beamopt.comparators.sweep import WORK, advance, leftover, segments_of
+from tests.beamopt.comparators.loaded_rods import MAGNUS, RUNGE_KUTTA, tangle
 
 STEP = 1e-5
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.comparators.following import Attempt, follow, solve_cases
+from beamopt.base.arrays import FloatArray
+from beamopt.comparators.following import Attempt, follow, solve_cases
 from beamopt.rod.status import RodStatus
 
 

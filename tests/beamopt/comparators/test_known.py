@@ -9,7 +9,7 @@ from beamopt.rod.arc import arc_tips
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import Base, PointLoad, Rod, Segment
 from beamopt.rod.solution import Method
-from tests.chart.comparators.loaded_rods import (
+from tests.beamopt.comparators.loaded_rods import (
     METHODS,
     NAMES,
     X,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from beamopt.chart.comparators.collocation import Collocation
-from beamopt.chart.comparators.multiple_shooting import MultipleShooting
-from beamopt.chart.comparators.shooting import Shooting
+from beamopt.comparators.collocation import Collocation
+from beamopt.comparators.multiple_shooting import MultipleShooting
+from beamopt.comparators.shooting import Shooting
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.solution import Method
-from tests.chart.comparators.loaded_rods import (
+from tests.beamopt.comparators.loaded_rods import (
     MAGNUS,
     RUNGE_KUTTA,
     cantilever,

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.actuator import Actuator
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, Grid, load_design
 from beamopt.export.faces import SectionFaces, section_faces
-from beamopt.seal import Seal
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, Grid, load_design
+from beamopt.scene.seal_keys import Seal
 from beamopt.section.feature_points import FeaturePoints
 
 __all__ = ["SAGITTA", "SAMPLES", "SEALED", "drawn", "faces_of", "random_section"]

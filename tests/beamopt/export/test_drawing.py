@@ -8,14 +8,14 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from beamopt.design import Design, load_design
 from beamopt.export.drawing import Drawing, section_drawing
 from beamopt.export.dxf import LAYERS, dxf_bytes
 from beamopt.export.faces import polygon_of
 from beamopt.export.svg import svg_text
 from beamopt.outline.green import loop_integrals
 from beamopt.plot.style import TYPE_COLOURS
-from tests.export.samples import SAGITTA, SAMPLES, SEALED, drawn, faces_of, random_section
+from beamopt.scene.design import Design, load_design
+from tests.beamopt.export.samples import SAGITTA, SAMPLES, SEALED, drawn, faces_of, random_section
 
 SVG = "{http://www.w3.org/2000/svg}"
 NUMBER = r"-?[\d.]+"

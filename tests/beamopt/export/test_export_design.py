@@ -9,17 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from beamopt.actuator import RodRules
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.export import run as export_run
-from beamopt.export.run import FILES, FORMATS, ExportOptions, export_design
+from beamopt.export import export_design as export_run
+from beamopt.export.export_design import FILES, FORMATS, ExportOptions, export_design
 from beamopt.export.step import is_installed
 from beamopt.outline.build import build_outline
 from beamopt.outline.faults import summaries
-from beamopt.seal import Seal
-from tests.export.samples import SAMPLES, SEALED, drawn, random_section
+from beamopt.scene.actuator import RodRules
+from beamopt.scene.design import load_design
+from beamopt.scene.seal_keys import Seal
+from tests.beamopt.export.samples import SAMPLES, SEALED, drawn, random_section
 
 LIGHT = ExportOptions(formats=("stl", "svg"))
 COMMAND = "import sys; from beamopt.cli.application import run; sys.exit(run(sys.argv[1:]))"

@@ -10,18 +10,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.export.bodies import Solid, body_solids, mould_solids
 from beamopt.export.faces import Contour, _clean, section_faces
 from beamopt.export.step import step_text
 from beamopt.export.stl import enclosed_volume, is_watertight, solid_triangles, stl_bytes
 from beamopt.outline.build import build_outline
+from beamopt.scene.design import Design, load_design
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
-from tests.export.samples import SAGITTA, SAMPLES, SEALED, drawn, faces_of, random_section
-from tests.outline.hostile import DRAWINGS, POINTS, RING
+from tests.beamopt.export.samples import SAGITTA, SAMPLES, SEALED, drawn, faces_of, random_section
+from tests.beamopt.outline.hostile import DRAWINGS, POINTS, RING
 
 LENGTH = 80.0
 READ = """

@@ -3,13 +3,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.judge import Status, judge_all
+from beamopt.judge.judge import Status, judge_all
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import phenotypes
-from beamopt.workspace import loss, pressure_grid
+from beamopt.target.workspace import loss, pressure_grid
 from tests.validation import symmetry
 
 SCENE = load_scene("hand-drawn-section")

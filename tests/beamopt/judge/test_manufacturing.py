@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.errors import InputError
-from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.judge import Status, Verdict
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
-from beamopt.scene_text import scene_text
+from beamopt.judge.judge import Status, Verdict
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.scene.toml_text import scene_text
+from beamopt.search.algorithm import GeneticAlgorithm
+from beamopt.search.optimize import optimize
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.phenotype import phenotypes
 from tests.journals import rewritten, without_digests

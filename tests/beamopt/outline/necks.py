@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.outline import Outline, Piece
 
 SPACING = 0.06

@@ -7,7 +7,7 @@ import shapely
 from beamopt.outline.faults import FaultKind, Severity
 from beamopt.outline.outline import Chamber, Outline
 from beamopt.section.grid import PolarGrid
-from tests.outline.necks import polygon_of
+from tests.beamopt.outline.necks import polygon_of
 
 
 def chamber_polygon(chamber: Chamber) -> shapely.Polygon:

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.errors import GEOSException
 
-from beamopt.design import Design
 from beamopt.outline import build
 from beamopt.outline.build import build_outline
 from beamopt.outline.faults import FaultKind
@@ -17,10 +16,11 @@ from beamopt.outline.outline import Outline
 from beamopt.outline.ring import usual_sagitta
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
+from beamopt.scene.design import Design
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import UNSEALED, SealRules
-from tests.outline.sound import chamber_polygon, check_sound
+from tests.beamopt.outline.sound import chamber_polygon, check_sound
 
 GRID = PolarGrid()
 ROUNDED, WALLED = SealRules(1.0, 0.0, 0.5), SealRules(1.0, 0.9, 0.5, 3.0)

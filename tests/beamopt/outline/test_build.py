@@ -13,8 +13,8 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
 from beamopt.section.seal import SealRules
-from tests.outline.hostile import DRAWINGS, POINTS, RING, RULES
-from tests.outline.necks import thinnest
+from tests.beamopt.outline.hostile import DRAWINGS, POINTS, RING, RULES
+from tests.beamopt.outline.necks import thinnest
 
 WALLED = SealRules(0.0, 0.9)
 

@@ -9,7 +9,7 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import moments_of
 from beamopt.section.raster import raster
-from tests.outline.hostile import POINTS, RING, random_points
+from tests.beamopt.outline.hostile import POINTS, RING, random_points
 
 EXTENT = 100.0
 

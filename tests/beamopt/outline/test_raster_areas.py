@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
-from beamopt.design import load_design
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.build import build_outline
-from beamopt.scene import load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
 from beamopt.section.cross_section import CrossSection
 
-FOUND = Path(__file__).parents[1] / "data" / "sealed_designs"
+FOUND = Path(__file__).parents[2] / "data" / "sealed_designs"
 
 
 @cache

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.rays import thin_places
 from beamopt.outline.smoothing import loops_of
 

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.green import loop_integrals as integrals
 from beamopt.outline.resampling import resample
 from beamopt.outline.ring import arc, circle

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamopt import load_design
-from beamopt.arrays import FloatArray
-from beamopt.bundled import bundled_scenes
+from beamopt.base.arrays import FloatArray
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Loop, Outline, Piece
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.outline.triangulation import Triangulation, quadratic, triangulate
+from beamopt.scene.bundled import bundled_scenes
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments
@@ -30,7 +30,7 @@ SEALED = {
     file.stem: file
     for file in (
         bundled_scenes()["sealed-section"].with_name("sealed_section.json"),
-        *sorted((Path(__file__).parents[1] / "data" / "sealed_designs").glob("*.json")),
+        *sorted((Path(__file__).parents[2] / "data" / "sealed_designs").glob("*.json")),
     )
 }
 

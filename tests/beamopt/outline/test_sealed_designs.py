@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.design import load_design
+from beamopt.scene.design import load_design
 
-FOLDER = Path(__file__).parents[1] / "data" / "sealed_designs"
+FOLDER = Path(__file__).parents[2] / "data" / "sealed_designs"
 
 AREA = 0.05
 """mm² of 200…900; polygons of the ring and of arcs may be made finer, a twin's wall is 1 mm²."""

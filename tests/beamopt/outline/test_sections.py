@@ -13,9 +13,9 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import moments_of
 from beamopt.section.raster import raster
 from beamopt.section.seal import SealRules
-from tests.outline.hostile import RING, RULES, Case, hostile_cases
-from tests.outline.necks import thinnest
-from tests.outline.sound import check_sound
+from tests.beamopt.outline.hostile import RING, RULES, Case, hostile_cases
+from tests.beamopt.outline.necks import thinnest
+from tests.beamopt.outline.sound import check_sound
 
 SAGITTA = 0.04
 TOLERANCE = 2 * SAGITTA + SLACK

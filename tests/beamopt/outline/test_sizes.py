@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
+from beamopt.base.arrays import FloatArray
 from beamopt.export.faces import section_faces
 from beamopt.outline.ring import usual_sagitta
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
+from beamopt.scene.design import Design
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments

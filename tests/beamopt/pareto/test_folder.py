@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.files import write_changed
-from beamopt.judge import in_parts
-from beamopt.pareto.run import find_front
+from beamopt.judge.judge import in_parts
+from beamopt.pareto.find_front import find_front
 from beamopt.pareto.search import FrontRecord
-from beamopt.scene import load_scene
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
+from beamopt.storage.writing import write_changed
 from tests.validation.resume import content
 
 WANTED = "hand-drawn-workspace"
@@ -163,7 +163,7 @@ def test_a_front_cut_while_it_is_written_leaves_no_design_that_its_table_does_no
 def test_two_processes_can_not_write_one_front(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("beamopt.file_lock.PATIENCE", 0.1)
+    monkeypatch.setattr("beamopt.storage.file_lock.PATIENCE", 0.1)
     scene = load_scene(WANTED, ["search.generations=1"])
     refused = []
 

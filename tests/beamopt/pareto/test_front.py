@@ -12,17 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
+from beamopt.pareto.find_front import find_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
-from beamopt.pareto.run import find_front
 from beamopt.pareto.scores import nondominated, scored
 from beamopt.pareto.search import FrontRecord, FrontSearch
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.stopping import StopReason
 from tests.journals import flipped, rewritten
 from tests.validation.resume import content, everything
 

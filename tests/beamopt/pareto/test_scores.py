@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.pareto.scores import chosen_objectives, nondominated
 
 FEW = st.integers(0, 6).map(float)  # few enough for ties

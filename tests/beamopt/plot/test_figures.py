@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
 from beamopt.plot.figures import convergence_figure, design_figure
 from beamopt.plot.section import OUTSIDE, section_pixels
 from beamopt.plot.style import TYPE_COLOURS, pressure_colours, save_figure
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
 
 DRAWN = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
 

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.reach.arc_inverse import arc_inverse
 from beamopt.reach.inverse import inverse_by_differences
 from beamopt.rod.arc import arc_tip_jacobian, arc_tips
 from beamopt.rod.response import linear_response
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 from beamopt.section.phenotype import phenotypes
 
 LENGTH, HIGH = 100.0, 100.0

@@ -6,12 +6,12 @@ from functools import partial
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
 from beamopt.reach.reach import ReachStatus, reach
 from beamopt.rod.ladder import Rung
 from beamopt.rod.response import Response, linear_response
-from beamopt.scene import load_scene
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
 from beamopt.section.moments import Moments
 
 DESIGN = load_design(bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json"))

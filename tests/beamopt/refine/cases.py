@@ -5,12 +5,12 @@ from functools import lru_cache
 import numpy as np
 import shapely
 
-from beamopt.arrays import FloatArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.judge import Judge
 from beamopt.outline.cells import _cells
 from beamopt.outline.green import loop_integrals
 from beamopt.refine.truth import Judged, View, judged_on
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.scene import Scene, load_scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray, LabelArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray, LabelArray
+from beamopt.judge.judge import Judge
 from beamopt.refine import annealing
 from beamopt.refine.annealing import Schedule, anneal
 from beamopt.refine.arc_loss import arc_loss
@@ -17,7 +17,7 @@ from beamopt.refine.orbits import orbits_of
 from beamopt.refine.truth import Judged, View, judged_on
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import mirror_symmetry
-from tests.refine.cases import judge_of, judged, random_points
+from tests.beamopt.refine.cases import judge_of, judged, random_points
 
 SCHEDULE = Schedule(400, 8, 300.0, 3.0)
 

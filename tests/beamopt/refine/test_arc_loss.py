@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.aim import Aim
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.refine.arc_loss import ArcAim, arc_loss
 from beamopt.rod.arc import arc_tip_directions, arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.moments import Moments
-from tests.refine.cases import judge_of, random_points
+from beamopt.target.aim import Aim
+from tests.beamopt.refine.cases import judge_of, random_points
 
 LENGTH, YOUNG = 100.0, 300.0
 

@@ -6,13 +6,13 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.refine.edges import moment_slopes
 from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.neighbours import neighbours_of
-from tests.refine.cases import domain_polygon, exact_moments, points_of, scattered
+from tests.beamopt.refine.cases import domain_polygon, exact_moments, points_of, scattered
 
 RING = PolarGrid(radial=32, angular=90)
 GRIDS = {

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
 from beamopt.refine.annealing import _arc_aim, _left_out
 from beamopt.refine.flips import Flips, walk
 from beamopt.refine.fragments import fragments_of
@@ -17,7 +17,7 @@ from beamopt.section.delaunay import delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.neighbours import neighbours_of
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
-from tests.refine.cases import judge_of, judged, points_of, random_points
+from tests.beamopt.refine.cases import judge_of, judged, points_of, random_points
 
 
 def flips_of(judge: Judge, points: FeaturePoints, symmetry: Symmetry | None = None) -> Flips:

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.refine.fragments import Fragments, fragments_of, kinds_of, moments_of_kinds, retype
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
 from beamopt.section.symmetry import mirror_symmetry, threefold_symmetry
-from tests.refine.cases import judge_of, points_of, random_points, scattered
+from tests.beamopt.refine.cases import judge_of, points_of, random_points, scattered
 
 GRIDS = {
     "ring": PolarGrid(radial=32, angular=90),

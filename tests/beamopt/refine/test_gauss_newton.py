@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
 from beamopt.refine.gauss_newton import SLACK, Limits, Linearised, descend, linearised
 from beamopt.refine.orbits import orbits_of
 from beamopt.refine.sensitivity import residual_of
 from beamopt.refine.truth import Judged, Truth, View, judged_on
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import threefold_symmetry
-from tests.refine.cases import judge_of, judged, points_of, random_points
+from tests.beamopt.refine.cases import judge_of, judged, points_of, random_points
 
 
 def made_up(seed: int, points: int = 15, rows: int = 30) -> Linearised:

@@ -10,7 +10,7 @@ from beamopt.refine.orbits import STAYS, orbits_of, with_cells
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
-from tests.refine.cases import domain_polygon, exact_moments, points_of, scattered
+from tests.beamopt.refine.cases import domain_polygon, exact_moments, points_of, scattered
 
 GRID = PolarGrid(radial=32, angular=90)
 SYMMETRIES = {"none": None, "mirror": mirror_symmetry(), "threefold": threefold_symmetry(GRID)}

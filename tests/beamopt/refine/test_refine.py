@@ -9,18 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.aim import aim_of_workspace
-from beamopt.judge import Judge
+from beamopt.judge.judge import Judge
 from beamopt.outline.build import build_outline
 from beamopt.refine import refine as room
 from beamopt.refine.orbits import with_cells
 from beamopt.refine.refine import Refined, RefineStatus, Stage, StageRecord, _Work, improved, refine
 from beamopt.refine.truth import Judged, Truth, View, judged_on
-from beamopt.search_settings import Refining
+from beamopt.scene.search_keys import Refining
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import mirror_symmetry, threefold_symmetry
-from beamopt.workspace import Workspace
-from tests.refine.cases import SMALL, judge_of, judged, points_of, random_points, scene_of
+from beamopt.target.aim import aim_of_workspace
+from beamopt.target.workspace import Workspace
+from tests.beamopt.refine.cases import SMALL, judge_of, judged, points_of, random_points, scene_of
 
 SHORT = Refining(flips=300, walks=4, steps=12, outline_steps=4, rounds=2)
 BOUND = 65.58  # of the scene hand-drawn-workspace; no response matrix at all has a lower loss

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 import beamopt
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.evolve.stopping import StopReason
-from beamopt.folder import design_file
-from beamopt.optimisation import optimize
 from beamopt.outline.faults import summaries
+from beamopt.refine.folder import REFINEMENT_FILES
 from beamopt.refine.refine import RefineStatus
+from beamopt.refine.refine_design import refine_design
 from beamopt.refine.truth import View, judged_on
-from beamopt.refinement import refine_design
-from beamopt.refinement_folder import REFINEMENT_FILES
-from beamopt.result import EarlierRefinement, Optimisation
-from beamopt.scene import load_scene
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
+from beamopt.search.optimize import optimize
+from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.stopping import StopReason
+from beamopt.storage.result_folder import design_file
 from tests.validation.resume import content, everything
 
 KEYS = ("grid.radial=32", "grid.angular=90", "section.feature_points=30")

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.answers import Answers
-from beamopt.arrays import FloatArray
-from beamopt.judge import Judge
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.answers import Answers
+from beamopt.judge.judge import Judge
 from beamopt.refine import sensitivity
 from beamopt.refine.sensitivity import (
     COUNTED,
@@ -22,7 +22,7 @@ from beamopt.refine.truth import Judged, answers_to
 from beamopt.rod.ladder import SectionValues
 from beamopt.rod.response import linear_response
 from beamopt.section.moments import Moments
-from tests.refine.cases import judge_of, judged, random_points
+from tests.beamopt.refine.cases import judge_of, judged, random_points
 
 LOADED = ("section.feature_points=25", "grid.radial=32", "grid.angular=90")
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from beamopt.judge import Status
+from beamopt.judge.judge import Status
 from beamopt.outline.build import build_outline
 from beamopt.refine.truth import View, answers_to, judged_on
 from beamopt.section.feature_points import FeaturePoints
-from tests.refine.cases import SMALL, judge_of, judged, random_points, scene_of
+from tests.beamopt.refine.cases import SMALL, judge_of, judged, random_points, scene_of
 
 
 @pytest.mark.parametrize("name", ["random-section", "sealed-section", "pairs", "spiral"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.balance import reaction_of, unknown_count
 from beamopt.rod.newton import CLOSE, evaluate, newton
 from beamopt.rod.packed import pack, stations_of

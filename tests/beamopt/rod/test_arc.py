@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import (
     SERIES_BELOW,
     arc_centreline,

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import arc_centreline, arc_tip_direction_jacobian, arc_tip_directions
 from beamopt.rod.ladder import Rung
-from beamopt.scene import load_scene
+from beamopt.scene.scene import load_scene
 
 LENGTH = 100.0
 

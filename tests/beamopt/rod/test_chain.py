@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.chain import SERIES_BELOW, chain_tips
 from beamopt.rod.law import cross
 from beamopt.rod.rod import STRAIGHT, Base, Rod, Segment
-from tests.rod.samples import plain_law, random_rod, rotation, solved
+from tests.beamopt.rod.samples import plain_law, random_rod, rotation, solved
 
 SWITCH = float(np.sqrt(SERIES_BELOW))
 

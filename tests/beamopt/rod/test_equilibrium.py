@@ -14,7 +14,7 @@ from beamopt.rod.equilibrium import MODES, solve_rod
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
-from tests.rod.samples import PLANE, plain_law, random_rod, solved
+from tests.beamopt.rod.samples import PLANE, plain_law, random_rod, solved
 
 EULER = np.pi**2 / 4
 

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.path import CriticalKind, follow_path
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
-from tests.rod.samples import BEND, PLANE, SPACE, plain_law, random_rod, solved, turned
+from tests.beamopt.rod.samples import BEND, PLANE, SPACE, plain_law, random_rod, solved, turned
 
 EULER = np.pi**2 / 4  # of a cantilever, EI = L = 1
 

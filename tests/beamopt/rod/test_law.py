@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.law import SectionLaw, cross, section_law
 from beamopt.rod.rod import PointLoad, Rod, Segment
 from beamopt.section.drawing import RingPiece, rasterise
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
-from tests.rod.samples import definite, solved, turned
+from tests.beamopt.rod.samples import definite, solved, turned
 
 seeds = st.integers(0, 2**32)
 FREE = (0, 1, 2)

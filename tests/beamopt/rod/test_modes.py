@@ -9,14 +9,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.law import cross
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.newton import FOUND
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
-from tests.rod.samples import BEND, SPACE, plain_law, random_rod, rotation, solved
-from tests.rod.statics import base_from_tip
-from tests.rod.system import System
+from tests.beamopt.rod.samples import BEND, SPACE, plain_law, random_rod, rotation, solved
+from tests.beamopt.rod.statics import base_from_tip
+from tests.beamopt.rod.system import System
 
 seeds = st.integers(0, 2**32)
 Y_HINGE = Base(hinges=np.array([[0.0, 1.0, 0.0]]))

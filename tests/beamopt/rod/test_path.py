@@ -9,8 +9,8 @@ from beamopt.rod.law import SectionLaw
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.path import PathStatus, follow_path
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment, Tip
-from tests.rod.samples import PLANE, SPACE, plain_law, solved
-from tests.rod.test_following import arch
+from tests.beamopt.rod.samples import PLANE, SPACE, plain_law, solved
+from tests.beamopt.rod.test_following import arch
 
 
 def bent(free: tuple[int, ...] = SPACE) -> Rod:

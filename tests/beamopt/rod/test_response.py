@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.section.drawing import RingPiece, rasterise
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
-from tests.section.quadrature import element_points
+from tests.beamopt.section.quadrature import element_points
 
 GRID = PolarGrid(radial=5, angular=8)
 E, G = 300.0, 100.0  # [kPa]

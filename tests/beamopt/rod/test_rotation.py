@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.rotation import GAUSS_3, magnus_step, multiply_rotation, rotation_vector
 
 angles = st.floats(0, np.pi)

@@ -9,8 +9,8 @@ import pytest
 from scipy.linalg import null_space
 
 from beamopt.rod.newton import FOUND
-from tests.rod.samples import BEND, SPACE, random_rod
-from tests.rod.system import System
+from tests.beamopt.rod.samples import BEND, SPACE, random_rod
+from tests.beamopt.rod.system import System
 
 
 @pytest.mark.parametrize("free", [BEND, SPACE])

@@ -12,26 +12,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from beamopt.chart.cases import SLENDERNESSES, Case, Kind, LoadedSection, case_of, sizes_of
-from beamopt.chart.journal import Journal
-from beamopt.chart.map_report import ANSWERS, NAMES
-from beamopt.chart.reading import reading
-from beamopt.chart.sampling import Row, Sample, solve_sample
-from beamopt.chart.stability import JOURNAL, run_stability
-from beamopt.chart.summary import commonest, rates_of
-from beamopt.chart.truth import compared, true_equilibrium
-from beamopt.chart.verdict import Answer, Truth, Verdict, Witness, judged
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.errors import InputError
 from beamopt.plot.stability_map import LOOKS
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
+from beamopt.rod_map.cases import SLENDERNESSES, Case, Kind, LoadedSection, case_of, sizes_of
+from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.map_report import ANSWERS, NAMES
+from beamopt.rod_map.reading import reading
+from beamopt.rod_map.sampling import Row, Sample, solve_sample
+from beamopt.rod_map.stability import JOURNAL, run_stability
+from beamopt.rod_map.summary import commonest, rates_of
+from beamopt.rod_map.truth import compared, true_equilibrium
+from beamopt.rod_map.verdict import Answer, Truth, Verdict, Witness, judged
+from tests.beamopt.rod.samples import PLANE, plain_law
 from tests.clocks import run_away
 from tests.journals import flipped
-from tests.rod.samples import PLANE, plain_law
 from tests.validation.resume import everything
 
 FOUND, LIMIT_POINT = RodStatus.CONVERGED, RodStatus.LIMIT_POINT
@@ -316,7 +316,7 @@ def test_the_reading_has_the_methods_in_their_order(made: tuple[Path, list[Sampl
 
 def test_where_nobody_knows_nobody_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     nobody = Truth(Witness.NEITHER, FOUND, NOWHERE, np.nan)
-    monkeypatch.setattr("beamopt.chart.sampling.true_equilibrium", lambda rod, rest: nobody)
+    monkeypatch.setattr("beamopt.rod_map.sampling.true_equilibrium", lambda rod, rest: nobody)
     sample = solve_sample(0, 0, ("adaptive", "modes"))
     assert [one.verdict for one in sample.rows] == [Verdict.UNDECIDED] * 2
     assert [one.status for one in sample.rows] == [RodStatus.SKIPPED] * 2

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.actuator import Actuator
-from beamopt.errors import InputError
-from beamopt.model import parse
+from beamopt.base.errors import InputError
 from beamopt.rod.law import poissons_ratio
-from beamopt.scene import Scene
+from beamopt.scene.actuator import Actuator
+from beamopt.scene.scene import Scene
+from beamopt.storage.checked_keys import parse
 
 
 def test_without_moduli_it_has_the_paper_s() -> None:

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
-from beamopt.scene import Scene
-from beamopt.seal import Seal
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import Scene
+from beamopt.scene.seal_keys import Seal
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid

@@ -10,20 +10,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.actuator import Loading, RodRules
+from beamopt.base.errors import InputError, NoEquilibriumError
 from beamopt.cli.application import run
-from beamopt.design import Design, load_design, section_values
-from beamopt.errors import InputError, NoEquilibriumError
-from beamopt.judge import Status
-from beamopt.optimisation import optimize
+from beamopt.judge.judge import Status
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
-from beamopt.run_summary import summary
-from beamopt.scene import Scene, load_scene
-from beamopt.scene_text import scene_text
+from beamopt.scene.actuator import Loading, RodRules
+from beamopt.scene.design import Design, load_design, section_values
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.scene.toml_text import scene_text
+from beamopt.search.optimize import optimize
+from beamopt.search.run_summary import summary
 from beamopt.section.saint_venant import section_saint_venant
-from beamopt.workspace import loss
+from beamopt.target.workspace import loss
 from tests.validation.resume import content
 
 QUICK = ["search.generations=2", "search.population=6", "target.seed=3"]
@@ -40,7 +40,7 @@ RUNGS = {
     "two-segments": Rung.CHAIN,
     "upright-column": Rung.LOADED,
 }
-SCENES = Path(__file__).parents[1] / "beamopt/scenes"
+SCENES = Path(__file__).parents[3] / "beamopt/scenes"
 
 
 def design_with(loads: dict[str, object], rod: dict[str, object] | None = None) -> Design:
@@ -51,7 +51,7 @@ def design_with(loads: dict[str, object], rod: dict[str, object] | None = None) 
 
 def test_a_sealed_design_twists_as_its_outline() -> None:
     """A design whose raster has 4 % less I_T and its shear centre 2.3 mm elsewhere."""
-    plain = load_design(Path(__file__).parent / "data/sealed_designs/search_1.json")
+    plain = load_design(Path(__file__).parents[2] / "data/sealed_designs/search_1.json")
     data = plain.model_dump(by_alias=True, exclude_none=True)
     rod = {"twist": "saint-venant", "rung": "loaded"}
     design = Design.model_validate(data | {"loads": {"line_force": [2.0, 0.0, 0.0]}, "rod": rod})

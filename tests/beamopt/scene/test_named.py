@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from beamopt import named
-from beamopt.bundled import bundled_scenes
-from beamopt.errors import InputError
-from beamopt.named import design_of_scene, named_design
-from beamopt.scene import load_scene
+from beamopt.base.errors import InputError
+from beamopt.scene import named
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.named import design_of_scene, named_design
+from beamopt.scene.scene import load_scene
 from tests.femcheck.check.small import design_of, three_circles
 
 

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.model import parse
-from beamopt.scene import Scene, load_scene
-from beamopt.scene_text import scene_text
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.scene.toml_text import scene_text
+from beamopt.storage.checked_keys import parse
 
 
 def test_defaults_are_the_papers_values() -> None:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import beamopt
-from beamopt import segment_files
-from beamopt.design import read_design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
+from beamopt.scene import segment_files
+from beamopt.scene.design import read_design
 
 SCENE = beamopt.load_scene("random-section", ["grid.radial=8", "grid.angular=24"])
 DESIGN = SCENE.design_of(SCENE.random_points(np.random.default_rng(0)))

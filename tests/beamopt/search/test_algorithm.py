@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from beamopt.evolve.algorithm import GeneticAlgorithm, Stage
-from beamopt.judge import Status, Verdict
-from beamopt.scene import Scene, load_scene
+from beamopt.judge.judge import Status, Verdict
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.algorithm import GeneticAlgorithm, Stage
 
 
 def made_up(search: GeneticAlgorithm, rng: np.random.Generator) -> list[Verdict]:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.evolve.algorithm import GeneticAlgorithm, Stage
-from beamopt.evolve.improvement import LITTLE, Improvement
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
-from beamopt.study.pool import in_process
+from beamopt.base.processes import in_process
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.algorithm import GeneticAlgorithm, Stage
+from beamopt.search.improvement import LITTLE, Improvement
+from beamopt.search.optimize import optimize
 from tests.validation.resume import content
 
 KEYS = (
@@ -53,8 +53,8 @@ def test_every_section_that_was_judged_is_counted(monkeypatch: pytest.MonkeyPatc
         judged.append(len(candidates))
         return measured(self, candidates)
 
-    monkeypatch.setattr("beamopt.judge.Judge.measured", counted)
-    monkeypatch.setattr("beamopt.evolve.run._compiling", lambda *search: 0.0)
+    monkeypatch.setattr("beamopt.judge.judge.Judge.measured", counted)
+    monkeypatch.setattr("beamopt.search.loop._compiling", lambda *search: 0.0)
     result = optimize(memetic())
     assert result.evaluations == sum(judged)
 

@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.evolve.algorithm import GeneticAlgorithm
-from beamopt.evolve.journal import Journal
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
+from beamopt.base.errors import InputError
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.algorithm import GeneticAlgorithm
+from beamopt.search.journal import Journal
+from beamopt.search.optimize import optimize
 from tests.journals import flipped, rewritten, without_digests
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=4"])

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 import beamopt
-from beamopt.evolve.history import History
-from beamopt.pareto.run import find_front
+from beamopt.pareto.find_front import find_front
+from beamopt.search.history import History
 
 SMALL = [
     "grid.radial=8",

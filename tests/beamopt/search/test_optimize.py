@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.evolve.algorithm import Generation
-from beamopt.evolve.stopping import StopReason
-from beamopt.file_lock import locked
-from beamopt.folder import LOCK
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
-from beamopt.timing import read_times
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.algorithm import Generation
+from beamopt.search.optimize import optimize
+from beamopt.search.stopping import StopReason
+from beamopt.storage.file_lock import locked
+from beamopt.storage.result_folder import LOCK
+from beamopt.storage.timing import read_times
 from tests.validation.resume import UNLIKE, content, everything
 
 SCENE = load_scene("hand-drawn-section", ["search.generations=5"])

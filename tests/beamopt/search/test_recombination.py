@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.evolve.recombination import fixed, ranged
+from beamopt.search.recombination import fixed, ranged
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.aim import Aim
-from beamopt.bundled import bundled_scenes
+from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.optimisation import optimize
-from beamopt.scene import Scene, load_scene
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import Scene, load_scene
+from beamopt.search.optimize import optimize
+from beamopt.target.aim import Aim
 from tests.validation.resume import content
 
 SCENES = bundled_scenes()

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from shapely import Geometry, MultiPoint, Point, Polygon
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules

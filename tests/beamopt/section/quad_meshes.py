@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamopt.arrays import FloatArray, IndexArray
+from beamopt.base.arrays import FloatArray, IndexArray
 
 Mesh = tuple[FloatArray, IndexArray]
 

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
-from beamopt.design import Design
-from beamopt.judge import Verdict
+from beamopt.base.arrays import FloatArray
+from beamopt.judge.judge import Verdict
+from beamopt.scene.design import Design
 from beamopt.section.cell_owners import NEAR
 from beamopt.section.feature_points import FeaturePoints
-from tests.refine.cases import judge_of, scene_of
+from tests.beamopt.refine.cases import judge_of, scene_of
 
 SCENES = ("random-section", "sealed-section")
 SIZE = ("grid.radial=32", "grid.angular=90")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.counting import count_chambers
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints

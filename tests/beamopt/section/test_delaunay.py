@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.delaunay import _in_circle, delaunay_edges
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid

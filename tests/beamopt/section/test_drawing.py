@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.section.drawing import Circle, RingPiece, rasterise
 from beamopt.section.grid import PolarGrid
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, label
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.fill import fill_islands, fill_small_chambers
 
 

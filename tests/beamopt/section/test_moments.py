@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import Moments, moments_of
-from tests.section.quadrature import element_points
+from tests.beamopt.section.quadrature import element_points
 
 NEAR = 1e-11
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.grid import PolarGrid
 from beamopt.section.pieces import Pieces, count_pieces
 

@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamopt import load_scene
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.saint_venant import SaintVenant, saint_venant, section_saint_venant
-from tests.section.quad_meshes import arc, patch, rectangle, together, triangle, turn
+from tests.beamopt.section.quad_meshes import arc, patch, rectangle, together, triangle, turn
 
 SQUARE = 0.1405770
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 
-from beamopt.arrays import LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
@@ -18,7 +18,7 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import moments_of
 from beamopt.section.phenotype import phenotypes
 from beamopt.section.seal import UNSEALED, SealRules
-from tests.section.outline_seal import first_moments, ring, sealed_chambers
+from tests.beamopt.section.outline_seal import first_moments, ring, sealed_chambers
 
 PAPER = PolarGrid()
 RING = PolarGrid(radial=40, angular=120)

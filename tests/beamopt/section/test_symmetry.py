@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray, LabelArray
+from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.section.cross_section import CrossSection
@@ -16,7 +16,7 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.phenotype import phenotypes
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
-from beamopt.workspace import pressure_grid
+from beamopt.target.workspace import pressure_grid
 
 GRID = PolarGrid(radial=32, angular=120)
 SYMMETRIES = {"mirror": mirror_symmetry(), "three-fold": threefold_symmetry(GRID)}

@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 
 import beamopt
 import femcheck
-from beamopt.actuator import Actuator, Loading, RodRules
-from beamopt.design import Design, Grid, load_design
-from beamopt.errors import InputError, NoEquilibriumError
-from beamopt.model import Model
-from beamopt.scene import Pressures, Scene, SectionRules, load_scene
-from beamopt.seal import Seal
-from tests.test_design import DRAWN
+from beamopt.base.errors import InputError, NoEquilibriumError
+from beamopt.scene.actuator import Actuator, Loading, RodRules
+from beamopt.scene.design import Design, Grid, load_design
+from beamopt.scene.scene import Pressures, Scene, SectionRules, load_scene
+from beamopt.scene.seal_keys import Seal
+from beamopt.storage.checked_keys import Model
+from tests.beamopt.scene.test_design import DRAWN
 
 GRID = Grid(radial=16, angular=48)
 DESIGN = load_design(DRAWN).model_copy(update={"grid": GRID, "wall_elements": 2})

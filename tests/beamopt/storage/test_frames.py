@@ -10,10 +10,10 @@ import pytest
 
 import beamopt
 import femcheck
-from beamopt.files import cell_text, csv_text
-from beamopt.frames import frame_of
-from beamopt.study.pool import in_process
-from femcheck.accuracy.run import run_accuracy
+from beamopt.base.processes import in_process
+from beamopt.storage.frames import frame_of
+from beamopt.storage.writing import cell_text, csv_text
+from femcheck.accuracy.folder import run_accuracy
 from tests.femcheck.check.small import design_of, quick_options, small_subject, three_circles
 
 
@@ -57,7 +57,7 @@ def test_table_of_a_study(tmp_path: Path) -> None:
 
 
 def test_tables_of_a_check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("femcheck.picture.draw", lambda *scene: False)
+    monkeypatch.setattr("femcheck.solved.picture.draw", lambda *scene: False)
     checked = femcheck.check_design(small_subject(), tmp_path, quick_options(), pool=in_process)
     assert checked.comparison is not None
     assert_same(checked.to_frame(), tmp_path / "compare.csv")

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design, load_design
-from beamopt.errors import InputError
-from beamopt.scene import load_scene
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design, load_design
+from beamopt.scene.scene import load_scene
 
 DRAWN = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
 

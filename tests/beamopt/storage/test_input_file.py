@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from beamopt import load_design, load_scene
-from beamopt.errors import InputError
-from beamopt.input_file import (
+from beamopt.base.errors import InputError
+from beamopt.scene.overrides import overridden
+from beamopt.storage.input_file import (
     MOST_BYTES,
     MOST_DEPTH,
     MOST_KEY_PARTS,
@@ -22,8 +23,7 @@ from beamopt.input_file import (
     read_json,
     read_text,
 )
-from beamopt.overrides import overridden
-from beamopt.table import read_table
+from beamopt.storage.number_table import read_table
 
 
 def sparse(path: Path, size: int) -> Path:

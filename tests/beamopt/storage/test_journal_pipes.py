@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.evolve.journal import Journal
-from beamopt.line_journal import LineJournal
+from beamopt.base.errors import InputError
+from beamopt.search.journal import Journal
+from beamopt.storage.line_journal import LineJournal
 
 
 def test_a_journal_that_is_a_pipe_is_refused(tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.errors import InputError
-from beamopt.line_journal import LineJournal, with_digest, without_digest
+from beamopt.base.errors import InputError
+from beamopt.storage.line_journal import LineJournal, with_digest, without_digest
 
 ASKED = {"schema": "test/1", "n": (1, 2), "text": "höhe\u2028\x85"}
 ENTRIES: list[dict[str, Any]] = [{"a": 1.5}, {"b": "zwei\u2028\x0b\nrows"}, {"c": [None, 0.1]}]

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.file_lock import HeldElsewhereError, locked
-from beamopt.folder import LOCK, FolderKind, claimed, clear_leftovers, own_subfolder
-from beamopt.scratch import clear_scratch, scratch_folder
+from beamopt.base.errors import InputError
+from beamopt.storage.file_lock import HeldElsewhereError, locked
+from beamopt.storage.result_folder import LOCK, FolderKind, claimed, clear_leftovers, own_subfolder
+from beamopt.storage.scratch import clear_scratch, scratch_folder
 
 KIND = FolderKind("a test", "marker.json", ('{"schema":"test/',))
 AT_ONCE = FolderKind("a chart", "provenance.json", ("{",), goes_on=False)
@@ -23,8 +23,8 @@ AT_ONCE = FolderKind("a chart", "provenance.json", ("{",), goes_on=False)
 CLAIM = """
 import sys, time
 from pathlib import Path
-from tests.test_folder import AT_ONCE, KIND, claimed
-from beamopt.scratch import scratch_folder
+from tests.beamopt.storage.test_result_folder import AT_ONCE, KIND, claimed
+from beamopt.storage.scratch import scratch_folder
 kind = KIND if sys.argv[2] == "KIND" else AT_ONCE
 with claimed(Path(sys.argv[1]), kind, resume=True), scratch_folder() as scratch:
     for name in sys.argv[3:]:
@@ -36,7 +36,7 @@ with claimed(Path(sys.argv[1]), kind, resume=True), scratch_folder() as scratch:
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("beamopt.file_lock.PATIENCE", 0.3)
+    monkeypatch.setattr("beamopt.storage.file_lock.PATIENCE", 0.3)
 
 
 def names(folder: Path) -> set[str]:
@@ -272,7 +272,7 @@ def test_a_folder_that_another_process_holds_by_its_lock_stays(
     monkeypatch.setattr(tempfile, "tempdir", None)
     process, living = begun(tmp_path / "living", "KIND")
     with process:
-        monkeypatch.setattr("beamopt.scratch._lives", lambda number: False)
+        monkeypatch.setattr("beamopt.storage.scratch._lives", lambda number: False)
         clear_scratch()
         assert living.exists()
         os.kill(process.pid, signal.SIGKILL)

@@ -6,16 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamopt.base.errors import InputError
 from beamopt.bound.certificate import BoundStatus
 from beamopt.cli.application import run
 from beamopt.cli.study import refinement_table
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.judge import Judge, Status, Verdict
-from beamopt.optimisation import optimize
+from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.scene.design import load_design
+from beamopt.search.optimize import optimize
+from beamopt.storage.timing import read_times
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.report import names
-from beamopt.study.run import run_study
+from beamopt.study.study import run_study
 from beamopt.study.table import (
     PAPER,
     Outcome,
@@ -24,7 +25,6 @@ from beamopt.study.table import (
     table_csv,
     table_markdown,
 )
-from beamopt.timing import read_times
 from tests.validation.resume import content, everything
 
 SMALL = Plan(
@@ -203,7 +203,7 @@ def test_an_interrupt_ends_the_study_not_one_search(
             raise KeyboardInterrupt
         return judge(candidates)  # type: ignore[arg-type]
 
-    monkeypatch.setattr("beamopt.evolve.run.judge_all", interrupted)
+    monkeypatch.setattr("beamopt.search.loop.judge_all", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_study(tmp_path / "study", SMALL, figures=False)
     assert len(judged) == 3

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.aim import Aim, aim_of_workspace
-from beamopt.bundled import bundled_scenes
-from beamopt.errors import InputError
-from beamopt.pairs import aim_csv, direction_weight_of, read_pairs
-from beamopt.scene import load_scene
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
-from beamopt.target import BaseFrame, read_target
+from beamopt.target.aim import Aim, aim_of_workspace
+from beamopt.target.point_table import aim_csv, direction_weight_of, read_pairs
+from beamopt.target.target import BaseFrame, read_target
 
 SCENES = bundled_scenes()
 DRAWN = SCENES["hand-drawn-workspace"].with_name("hand_drawn_workspace.csv")
@@ -129,7 +129,7 @@ def test_the_bundled_pairs_belong_to_a_section() -> None:
     """Its file has four digits after the point, and directions five."""
     scene = load_scene("pairs")
     judge = scene.judge(scene.load_target())
-    from beamopt.design import load_design
+    from beamopt.scene.design import load_design
 
     drawn = load_design(SCENES["hand-drawn-section"].with_name("hand_drawn_section.json"))
     assert judge.loss_of(drawn.values) < 1e-6

@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.errors import InputError
-from beamopt.target import BaseFrame, read_target
-from beamopt.workspace import pressure_grid, tips_csv
+from beamopt.base.errors import InputError
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.target.target import BaseFrame, read_target
+from beamopt.target.workspace import pressure_grid, tips_csv
 
 LEVELS = (0.0, 50.0, 100.0)
 DRAWN = bundled_scenes()["hand-drawn-workspace"].with_name("hand_drawn_workspace.csv")

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from beamopt.rod.arc import arc_tip_jacobian_by_response, arc_tips
 from beamopt.rod.response import LinearResponse, linear_response
-from beamopt.scene import load_scene
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.scene import load_scene
 from beamopt.section.moments import Moments
-from beamopt.target import BaseFrame
-from beamopt.trajectory import read_path, sampled
+from beamopt.target.target import BaseFrame
+from beamopt.target.trajectory import read_path, sampled
 
 SCENES = bundled_scenes()
 SPIRAL = SCENES["spiral"].with_name("spiral.csv")

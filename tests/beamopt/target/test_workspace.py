@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
-from beamopt.workspace import (
+from beamopt.base.arrays import FloatArray
+from beamopt.target.workspace import (
     HEXAHEDRON_EDGES,
     HEXAHEDRON_NODES,
     Workspace,

@@ -11,16 +11,16 @@ from shutil import copytree
 import numpy as np
 import pytest
 
-from beamopt.study.pool import in_process
+from beamopt.base.processes import in_process
 from femcheck.accuracy import knowledge
 from femcheck.accuracy.ending import Ending
 from femcheck.accuracy.knowledge import FILE, HEADER, MATERIAL, RIGID, learnt, levels_for, scale_of
 from femcheck.accuracy.within import answer_within
-from femcheck.chart import run
+from femcheck.chart import campaign as run
+from femcheck.chart.campaign import run_chart
 from femcheck.chart.chart import Chart
 from femcheck.chart.kept import read_chart
 from femcheck.chart.measure import Measured, key_of
-from femcheck.chart.run import run_chart
 from femcheck.models.question import LawChoice
 from femcheck.models.reply import Model
 from femcheck.models.solid import SolidModel

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.named import named_design
+from beamopt.base.errors import InputError
+from beamopt.scene.named import named_design
 from femcheck.accuracy.ending import Ending
-from femcheck.accuracy.run import NAMES, beam_difference, run_accuracy
+from femcheck.accuracy.folder import NAMES, beam_difference, run_accuracy
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of

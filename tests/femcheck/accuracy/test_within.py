@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.errors import InputError
-from beamopt.named import named_design
+from beamopt.base.errors import InputError
+from beamopt.scene.named import named_design
 from femcheck.accuracy import within
 from femcheck.accuracy.ending import Ending, Source, Within
 from femcheck.accuracy.knowledge import MATERIAL, ORDERS, RIGID, Level, levels_for, scale_of

@@ -10,20 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
-from beamopt.errors import InputError
-from beamopt.line_journal import with_digest
-from beamopt.named import named_design
-from beamopt.study.pool import in_process
-from femcheck.chart import lineup, run
+from beamopt.base.errors import InputError
+from beamopt.base.processes import in_process
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.scene.named import named_design
+from beamopt.storage.line_journal import with_digest
+from femcheck.chart import campaign as run
+from femcheck.chart import lineup
+from femcheck.chart.campaign import Budget, run_chart
 from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
 from femcheck.chart.measure import Measured, is_final, key_of, made_with, measure, read, written
 from femcheck.chart.reference import Limit, Reference
-from femcheck.chart.run import Budget, run_chart
 from femcheck.chart.table import HEADER
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended, NoReply

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
-from beamopt.named import named_design
+from beamopt.base.arrays import FloatArray
+from beamopt.scene.named import named_design
 from femcheck.chart.lineup import Series
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Limit, Reference, limits_of, reference_of

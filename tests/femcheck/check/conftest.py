@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-import femcheck.picture
+import femcheck.solved.picture
+from femcheck.check.check_design import check_design
 from femcheck.check.checked import Checked
-from femcheck.check.run import check_design
 from tests.femcheck.check.small import here, quick_options, small_options, small_subject
 
 
@@ -15,7 +15,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Checked, Path]:
     """A whole check in this process, and its folder."""
     folder = tmp_path_factory.mktemp("check") / "small"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
         return check_design(small_subject(), folder, small_options(), pool=here), folder
 
 
@@ -24,10 +24,10 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Checked, Path]:
     """The same with an element that locks."""
     folder = tmp_path_factory.mktemp("check") / "small"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
         return check_design(small_subject(), folder, quick_options(), pool=here), folder
 
 
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
+    monkeypatch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import Design
+from beamopt.base.processes import in_process
 from beamopt.outline.build import build_outline
 from beamopt.outline.outline import Outline
-from beamopt.study.pool import in_process
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import Design
 from femcheck.check.options import CheckOptions
-from femcheck.check.subject import Subject
 from femcheck.mesh.geo import SectionSizes
+from femcheck.solved.subject import Subject
 
 here = in_process
 

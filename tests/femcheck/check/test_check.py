@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import femcheck.picture
-from beamopt.arrays import FloatArray
-from beamopt.workspace import node_index
-from femcheck.check.case import Case, Solid, solve_case
+import femcheck.solved.picture
+from beamopt.base.arrays import FloatArray
+from beamopt.target.workspace import node_index
 from femcheck.check.checked import Checked
-from femcheck.check.subject import Subject
 from femcheck.check.tables import verdict
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
+from femcheck.solved.case import Case, Solid, solve_case
+from femcheck.solved.subject import Subject
 from tests.femcheck.check.small import LEVELS
 
 Done = tuple[Checked, Path]
@@ -256,7 +256,7 @@ def test_the_picture(done: Done) -> None:
     import matplotlib.image
 
     checked, folder = done
-    assert femcheck.picture.draw(folder, *scene_of(checked))
+    assert femcheck.solved.picture.draw(folder, *scene_of(checked))
     image = matplotlib.image.imread(folder / "picture.png")
     (folder / "picture.png").unlink()
     assert image.shape[:2] == (1000, 1800)
@@ -272,6 +272,6 @@ def test_the_picture(done: Done) -> None:
 def test_a_picture_that_fails_is_only_a_log(
     done: Done, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(femcheck.picture.sys, "executable", "/bin/false")
-    assert not femcheck.picture.draw(tmp_path, *scene_of(done[0]))
+    monkeypatch.setattr(femcheck.solved.picture.sys, "executable", "/bin/false")
+    assert not femcheck.solved.picture.draw(tmp_path, *scene_of(done[0]))
     assert [file.name for file in tmp_path.iterdir()] == ["picture.log"]

@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
-from beamopt.folder import differences
-from beamopt.study.pool import InProcess
-from femcheck.check.case import solve_case
+from beamopt.base.processes import InProcess
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
+from beamopt.storage.result_folder import differences
+from femcheck.check.check_design import check_design
 from femcheck.check.checked import Checked
-from femcheck.check.run import check_design
-from femcheck.check.subject import Subject, UnsealedDesignError, check_sealed, sealed_copy
 from femcheck.check.tables import verdict
 from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import Mesher, MeshProblem
+from femcheck.solved.case import solve_case
+from femcheck.solved.subject import Subject, UnsealedDesignError, check_sealed, sealed_copy
 from tests.femcheck.check.small import (
     Coarse,
     design_of,

@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.folder import LOCK
-from beamopt.study.pool import processes
+from beamopt.base.errors import InputError
+from beamopt.base.processes import processes
+from beamopt.storage.result_folder import LOCK
+from femcheck.check.check_design import check_design
 from femcheck.check.checked import Checked
-from femcheck.check.folder import KIND
 from femcheck.check.kept import case_file, read_case, write_case
-from femcheck.check.run import check_design
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.shape import Shapes
+from femcheck.solved.folder import KIND
 from tests.clocks import busy, run_away
 from tests.femcheck.check.small import here, kept_files, quick_options, small_options, small_subject
 from tests.kills import survives
@@ -186,8 +186,8 @@ def test_killed_in_the_middle(quick: Done, tmp_path: Path) -> None:
     """A process killed once some cases are there, resumed in this one."""
     folder = tmp_path / "small"
     code = (
-        "import sys, femcheck.picture; femcheck.picture.draw = lambda *scene: False;"
-        "from pathlib import Path; from femcheck.check.run import check_design;"
+        "import sys, femcheck.solved.picture; femcheck.solved.picture.draw = lambda *scene: False;"
+        "from pathlib import Path; from femcheck.check.check_design import check_design;"
         "from tests.femcheck.check.small import here, quick_options, small_subject;"
         "check_design(small_subject(), Path(sys.argv[1]), quick_options(), pool=here)"
     )

@@ -9,12 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.study import work
-from beamopt.study.work import solve_all
-from femcheck.check import run as check_run
+from beamopt.base import tasks as work
+from beamopt.base.tasks import solve_all
+from femcheck.check import check_design as check_run
 from femcheck.check import schedule as module
-from femcheck.check.case import Case, CaseResult
-from femcheck.check.meshes import layers_for
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits
@@ -22,6 +20,8 @@ from femcheck.continuation.outcome import Outcome, Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.state import State
+from femcheck.solved.case import Case, CaseResult
+from femcheck.solved.meshes import layers_for
 from tests.femcheck.lattice import lattice_section
 
 LEVELS = (0.0, 20.0, 50.0)
@@ -64,7 +64,7 @@ def solved(case: Case) -> CaseResult:
 
 
 def stages() -> list[Stage]:
-    from femcheck.check.case import Solid
+    from femcheck.solved.case import Solid
 
     names = (("soft", None), ("hard", "soft"), ("other", None))
     section = lattice_section()

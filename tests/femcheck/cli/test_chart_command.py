@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamopt.study.pool import in_process
+from beamopt.base.processes import in_process
 from femcheck.chart import lineup
+from femcheck.chart.campaign import run_chart
 from femcheck.chart.kept import read_chart
-from femcheck.chart.run import run_chart
 from femcheck.cli.application import run
 from tests.femcheck.check.small import design_of, three_circles
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import femcheck.cli.subjects
-import femcheck.picture
+import femcheck.solved.picture
 from femcheck.cli.application import run
 from femcheck.continuation.direct import Pardiso
 from tests.femcheck.check.small import Coarse, design_of, three_circles
@@ -22,7 +22,7 @@ CHEAP = ["--element", "tet4", "--layers", "2", "--size", "9", "--workers", "1"]
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
+    monkeypatch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
     monkeypatch.setattr(femcheck.cli.subjects, "Subject", Coarse)
     design_of(three_circles()).save(tmp_path / "disc.json")
     stiff = {"shear_modulus": 150.0}

@@ -17,7 +17,7 @@ from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from femcheck.prediction.prediction import Prediction
-from femcheck.regression.run import Regression
+from femcheck.regression.regression import Regression
 from tests.femcheck.check.small import small_subject
 
 HOLDS, DIFFERS, LOST = ExitCode.HOLDS, ExitCode.DOES_NOT_HOLD, ExitCode.NOT_COMPUTED

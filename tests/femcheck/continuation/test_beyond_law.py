@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from femcheck.check.case import Case, Solid, solve_case
 from femcheck.continuation.outcome import Status
 from femcheck.continuation.path import Path
 from femcheck.continuation.trace import PathSteps
 from femcheck.material.mooney_rivlin import MooneyRivlin
 from femcheck.material.yeoh import Yeoh
 from femcheck.mesh.extrusion import stations
+from femcheck.solved.case import Case, Solid, solve_case
 from tests.femcheck.solid.tubes import tube_section
 from tests.validation.published_bodies import DIRECTION, Published, sphere
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
 from femcheck.continuation.limits import Limits

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import (
     DirectSolver,

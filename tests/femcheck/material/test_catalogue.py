@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from femcheck.material.catalogue import (
     LAWS,
     MATERIALS,

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
 from femcheck.material.gent import Gent
 from femcheck.material.isotropic import Isotropic
 from femcheck.material.mooney_rivlin import MooneyRivlin

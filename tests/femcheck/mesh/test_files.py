@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from beamopt.bundled import bundled_scenes
-from beamopt.design import load_design
+from beamopt.scene.bundled import bundled_scenes
+from beamopt.scene.design import load_design
 from femcheck.mesh.extrusion import Extrusion, extrude, stations
 from femcheck.mesh.files import TAGS, write_deformed, write_mesh
 from femcheck.mesh.geo import SectionSizes

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from beamopt.design import Design
-from beamopt.named import named_design
+from beamopt.scene.design import Design
+from beamopt.scene.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.models.beam import TIGHTEST, ArcOnGrid, RodByMethod, RodOnOutline, on_grid

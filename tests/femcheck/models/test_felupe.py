@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.named import named_design
+from beamopt.scene.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.outcome import Status

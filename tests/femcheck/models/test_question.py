@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from beamopt.named import named_design
-from beamopt.workspace import pressure_grid
+from beamopt.scene.named import named_design
+from beamopt.target.workspace import pressure_grid
 from femcheck.check.options import CheckOptions
-from femcheck.check.subject import LoadedDesignError
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
+from femcheck.solved.subject import LoadedDesignError
 from tests.femcheck.check.small import LEVELS, design_of, three_circles
 
 OPEN = {"skin": 0, "wall": 0, "rounding": 0, "smallest_chamber": 0}

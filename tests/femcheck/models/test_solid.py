@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from beamopt.named import named_design
-from femcheck.check.case import solve_case, stopped
+from beamopt.base.arrays import FloatArray
+from beamopt.scene.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended
 from femcheck.continuation.outcome import Outcome, Status
@@ -19,6 +18,7 @@ from femcheck.models.beam import RodOnOutline
 from femcheck.models.question import LawChoice, Question
 from femcheck.models.solid import SolidModel
 from femcheck.prediction.options import PredictionOptions
+from femcheck.solved.case import solve_case, stopped
 from tests.femcheck.check.small import SIZES, design_of, small_options, three_circles
 
 pytestmark = pytest.mark.usefixtures("coarse")

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-import femcheck.picture
-import femcheck.prediction.run
+import femcheck.prediction.predict_design
+import femcheck.solved.picture
 from femcheck.prediction.prediction import Prediction
 from tests.femcheck.prediction.small import predict, soft_subject
 
@@ -26,7 +26,7 @@ def limited(
     """A whole prediction in this process, with figures: every ray balloons. Eight seconds."""
     folder = tmp_path_factory.mktemp("prediction") / "soft"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: pictured.append(scene))
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: pictured.append(scene))
         return predict(folder), folder
 
 
@@ -35,12 +35,12 @@ def calm(tmp_path_factory: pytest.TempPathFactory) -> tuple[Prediction, Path]:
     """The same at pressures that it stands, asked for no more than it gives. Four seconds."""
     folder = tmp_path_factory.mktemp("prediction") / "soft"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
-        patch.setattr(femcheck.prediction.run, "save_figure", lambda *figure: None)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.prediction.predict_design, "save_figure", lambda *figure: None)
         return predict(folder, soft_subject(levels=[0, 1, 2]), agree=1.0), folder
 
 
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(femcheck.picture, "draw", lambda *scene: False)
-    monkeypatch.setattr(femcheck.prediction.run, "save_figure", lambda *figure: None)
+    monkeypatch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
+    monkeypatch.setattr(femcheck.prediction.predict_design, "save_figure", lambda *figure: None)

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 
 from beamopt.rod.arc import arc_tips
-from femcheck.check.case import Solid
-from femcheck.check.subject import Subject
 from femcheck.continuation.outcome import Status
 from femcheck.mesh.geo import SectionSizes
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.options import PredictionOptions
+from femcheck.prediction.predict_design import predict_design
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.ray_trace import RayResult
 from femcheck.prediction.rays import Ray, rays_of
-from femcheck.prediction.run import predict_design
+from femcheck.solved.case import Solid
+from femcheck.solved.subject import Subject
 from tests.femcheck.check.small import Coarse, design_of, here, three_circles
 
 SIZES = SectionSizes(factor=9.0)  # as `--size 9` asks

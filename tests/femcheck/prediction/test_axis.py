@@ -5,9 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
-from femcheck.check.case import Solid
-from femcheck.check.meshes import section_meshes
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.mesh.extrusion import stations
@@ -17,6 +15,8 @@ from femcheck.prediction.rays import Ray
 from femcheck.solid.body import Body
 from femcheck.solid.plate import cross_matrix, rotation
 from femcheck.solid.state import State, placed, rest_state
+from femcheck.solved.case import Solid
+from femcheck.solved.meshes import section_meshes
 from tests.femcheck.check.small import Coarse, design_of, three_circles
 from tests.femcheck.lattice import LENGTH, lattice_body
 from tests.femcheck.prediction.small import options_of

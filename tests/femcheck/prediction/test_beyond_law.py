@@ -28,7 +28,7 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> tuple[Prediction, Path]:
     """Of which the highest level is beyond the law; some seconds."""
     folder = tmp_path_factory.mktemp("left") / "soft"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("femcheck.picture.draw", lambda *scene: False)
+        patch.setattr("femcheck.solved.picture.draw", lambda *scene: False)
         return predict(folder, law="yeoh", constants=FALLING), folder
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import femcheck.cli.subjects
-import femcheck.picture
-import femcheck.prediction.run
+import femcheck.prediction.predict_design
+import femcheck.solved.picture
 from femcheck.cli.application import run
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.verdict import advice, verdict

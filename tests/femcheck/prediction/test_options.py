@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.actuator import Actuator
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
+from beamopt.scene.actuator import Actuator
 from femcheck.material.fibre import Thread
 from femcheck.material.gent import Gent
 from femcheck.prediction.options import PredictionOptions

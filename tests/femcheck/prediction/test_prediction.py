@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import femcheck.picture
+import femcheck.solved.picture
 from femcheck.continuation.outcome import Status
 from femcheck.prediction.prediction import Prediction
 from femcheck.prediction.two_meshes import GROWTH, MARGIN
@@ -206,7 +206,7 @@ def test_27_standard_rows_matched_by_pressure(limited: Done) -> None:
 
 def test_the_solid_s_tip_is_the_state_s_at_those_pressures(limited: Done) -> None:
     """A ray's stops are not mixed up: forces on the solid at its tip's state are in balance."""
-    from femcheck.check.case import workshop
+    from femcheck.solved.case import workshop
 
     found, folder = limited
     row = next(
@@ -423,6 +423,6 @@ def test_the_picture(limited: Done, pictured: list[tuple[Any, ...]], tmp_path: P
     assert x is last.x
     np.testing.assert_allclose(pressures, last.load)  # all supplies alike
     assert "limit point at" in said
-    assert femcheck.picture.draw(tmp_path, *scene[1:])
+    assert femcheck.solved.picture.draw(tmp_path, *scene[1:])
     image = matplotlib.image.imread(tmp_path / "picture.png")
     assert (np.ptp(image[..., :3], axis=2) > 0.2).mean() > 0.001

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from beamopt.arrays import FloatArray
-from beamopt.workspace import pressure_grid
+from beamopt.base.arrays import FloatArray
+from beamopt.target.workspace import pressure_grid
 from femcheck.prediction.rays import Ray, rays_of
 
 PRINCIPAL = {(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 1.0, 1.0)}

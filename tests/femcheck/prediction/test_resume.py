@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.study.pool import InProcess, processes
+from beamopt.base.errors import InputError
+from beamopt.base.processes import InProcess, processes
 from femcheck.continuation.outcome import Status
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.kept import ray_file, read_ray, write_ray
@@ -98,8 +98,9 @@ def test_killed_in_the_middle(limited: Done, copied: Path) -> None:
     names = (*SOME, "coarse-0_100_0", "standard-0_0_100")
     lost = without(copied, *names)
     code = (
-        "import sys, femcheck.picture, femcheck.prediction.run as run;"
-        "femcheck.picture.draw = lambda *scene: False; run.save_figure = lambda *figure: None;"
+        "import sys, femcheck.solved.picture, femcheck.prediction.predict_design as run;"
+        "femcheck.solved.picture.draw = lambda *scene: False;"
+        "run.save_figure = lambda *figure: None;"
         "from pathlib import Path; from tests.femcheck.prediction.small import predict;"
         "predict(Path(sys.argv[1]), resume=True)"
     )

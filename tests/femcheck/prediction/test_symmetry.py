@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
-from femcheck.check.case import Solid
-from femcheck.check.meshes import heights_of, section_meshes
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.prediction.ray_trace import RayResult, RayTask, trace_ray
 from femcheck.prediction.rays import Ray
 from femcheck.solid.plate import rotation
+from femcheck.solved.case import Solid
+from femcheck.solved.meshes import heights_of, section_meshes
 from tests.femcheck.check.small import Coarse, design_of, three_circles
 from tests.femcheck.prediction.small import SOFT, options_of
 

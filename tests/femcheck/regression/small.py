@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from beamopt.design import Design
+from beamopt.scene.design import Design
 from femcheck.regression.held import Held, Row
 
 GRID = {

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import femcheck.regression.rods
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from beamopt.rod.response import LinearResponse
 from femcheck.cli.application import run
 from femcheck.continuation.ended import Ended
@@ -21,7 +21,7 @@ from femcheck.models.reply import Reply
 from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import LADDER
 from femcheck.regression.held_design import BUNDLED, find_design
-from femcheck.regression.run import hold_designs, regress, update_baseline
+from femcheck.regression.regression import hold_designs, regress, update_baseline
 from tests.femcheck.regression.small import saved
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -350,8 +350,8 @@ def test_another_s_mesh_is_left_alone(
     """One in the place of a section mesh, as of a program that shares the folder."""
     design = find_design(str(saved(folder, sealed=True)), folder)
     design.mesh.write_text(text)
-    monkeypatch.setattr("femcheck.regression.run.make_section", lambda design: None)
-    monkeypatch.setattr("femcheck.regression.run.measure_all", lambda *_, **__: None)
+    monkeypatch.setattr("femcheck.regression.regression.make_section", lambda design: None)
+    monkeypatch.setattr("femcheck.regression.regression.measure_all", lambda *_, **__: None)
     assert design.has_solid
     for update in (
         lambda: hold_designs([str(folder / "small.json")], folder / "kept", folder),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from femcheck.regression.held_design import find_design
-from femcheck.regression.run import update_baseline
+from femcheck.regression.regression import update_baseline
 from tests.femcheck.regression.small import saved
 
 pytest_plugins = "pytester"
@@ -117,4 +117,4 @@ def test_loading_the_plugin_loads_nothing_else() -> None:
         "sorted(n for n in sys.modules if n.startswith('beamopt')))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[] ['beamopt', 'beamopt.public_names']"
+    assert done.stdout.strip() == "[] ['beamopt', 'beamopt.base', 'beamopt.base.public_names']"

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import femcheck.check.case
 import femcheck.models.solid
 import femcheck.regression.solids
-from beamopt.arrays import FloatArray
-from beamopt.errors import InputError
+import femcheck.solved.case
+from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import InputError
 from femcheck.continuation.ended import FOUND, Ended
 from femcheck.continuation.outcome import Status
 from femcheck.material.rigid_section import RigidSection
@@ -23,7 +23,7 @@ from femcheck.regression.held import Held
 from femcheck.regression.held_design import HeldDesign, design_digest, find_design
 from femcheck.regression.kept_mesh import KeptMesher, mesh_digest, read_kept, write_section
 from femcheck.regression.measure import parts_of
-from femcheck.regression.run import ContradictionError, regress, update_baseline
+from femcheck.regression.regression import ContradictionError, regress, update_baseline
 from femcheck.regression.solids import LAWS, held_limit, held_solid
 from femcheck.solid.body import Body
 from tests.femcheck.regression.small import CIRCLES, saved
@@ -76,7 +76,7 @@ def test_a_wrong_cap_is_seen_at_rest(kept: Path, monkeypatch: pytest.MonkeyPatch
         return body.extrusion.section.moments.chamber_areas * 1.01
 
     monkeypatch.setattr(Body, "cap_areas", property(wrong))
-    monkeypatch.setattr(femcheck.check.case, "_WORKSHOPS", {})
+    monkeypatch.setattr(femcheck.solved.case, "_WORKSHOPS", {})
     assert lowest(kept) == "solid at rest"
 
 

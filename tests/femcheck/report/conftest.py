@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-import femcheck.picture
-import femcheck.prediction.run
-from femcheck.check.run import check_design
+import femcheck.prediction.predict_design
+import femcheck.solved.picture
+from femcheck.check.check_design import check_design
 from femcheck.report.page import report_page
 from tests.femcheck.check.small import here, quick_options, small_subject
 from tests.femcheck.prediction.small import predict
@@ -18,7 +18,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A check of an element that locks, so that beam and solid differ. Two seconds."""
     folder = tmp_path_factory.mktemp("report") / "checked"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
         check_design(small_subject("disc"), folder, quick_options(), pool=here)
     return folder
 
@@ -28,7 +28,7 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A prediction that has some answers, and limits below the highest level. Ten seconds."""
     folder = tmp_path_factory.mktemp("report") / "predicted"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.picture, "draw", lambda *scene: False)
+        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
         predict(folder)
     return folder
 

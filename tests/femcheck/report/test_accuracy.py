@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from beamopt.design import load_design
-from beamopt.errors import InputError
+from beamopt.base.errors import InputError
+from beamopt.scene.design import load_design
 from femcheck.accuracy.ending import Source
-from femcheck.accuracy.run import run_accuracy
+from femcheck.accuracy.folder import run_accuracy
 from femcheck.check.options import CheckOptions
 from femcheck.models.question import Question
 from femcheck.report.accuracy_run import read_accuracy_run

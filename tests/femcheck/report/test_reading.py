@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beamopt.errors import InputError
-from beamopt.files import csv_text
+from beamopt.base.errors import InputError
+from beamopt.storage.writing import csv_text
 from femcheck.report.content import read_table
 from femcheck.report.folders import Kind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
@@ -200,9 +200,9 @@ def test_figure_folders_are_read(chart: Path, tmp_path: Path) -> None:
 
 def test_searches_are_read(tmp_path: Path) -> None:
     """A search of one generation, with what `beamopt optimize` writes."""
-    from beamopt.optimisation import optimize
-    from beamopt.run_folder import RunFolder
-    from beamopt.scene import load_scene
+    from beamopt.scene.scene import load_scene
+    from beamopt.search.optimize import optimize
+    from beamopt.search.run_folder import RunFolder
 
     scene = load_scene("random-section", ["search.generations=1"])
     with RunFolder.open(tmp_path / "search", resume=False) as folder:
@@ -220,8 +220,8 @@ def test_searches_are_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["pairs", "spiral"])
 def test_searches_for_other_targets_are_read(name: str, tmp_path: Path) -> None:
     """What was asked for stands beside the results with a person's comments in it."""
-    from beamopt.optimisation import optimize
-    from beamopt.scene import load_scene
+    from beamopt.scene.scene import load_scene
+    from beamopt.search.optimize import optimize
 
     scene = load_scene(name, ["search.generations=1", "search.population=4"])
     optimize(scene, tmp_path / name, figures=False)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import direct_solver
 from femcheck.continuation.newton import Newton
 from femcheck.continuation.outcome import Status

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.sparse import triu
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import Pardiso, direct_solver
 from femcheck.continuation.newton import Newton

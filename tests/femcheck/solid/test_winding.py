@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from femcheck.assembly.pattern import make_pattern
 from femcheck.assembly.reduction import UpperMatrix
 from femcheck.continuation.direct import direct_solver

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from femcheck.check.store import MARK, read_arrays, write_arrays
+from femcheck.solved.store import MARK, read_arrays, write_arrays
 
 ARRAYS = {"x": np.array([[0.125, -1e300], [np.nan, 3.0]]), "status": np.array("CONVERGED")}
 

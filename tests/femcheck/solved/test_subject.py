@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beamopt.rod.arc import arc_tips
-from femcheck.check.subject import Subject, slender_copy
+from femcheck.solved.subject import Subject, slender_copy
 from tests.femcheck.check.small import design_of, small_subject, three_circles
 
 

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from beamopt.base.processes import in_process
 from beamopt.section.drawing import Circle
-from beamopt.study.pool import in_process
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.stability.axis import Axis, Column
 from femcheck.stability.ending import Ending
 from femcheck.stability.found import AxisFound
-from femcheck.stability.run import run_map
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
+from femcheck.stability.stability_map import run_map
 
 PRESSURES = (4.0, 8.0, 12.0)
 DISC = Specimen(

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 import femcheck.cli.stability
-from beamopt.study.pool import in_process
+from beamopt.base.processes import in_process
 from femcheck.cli.application import run
-from femcheck.stability.run import run_map
+from femcheck.stability.stability_map import run_map
 from tests.femcheck.stability.small import axes_of, kept_files
 
 

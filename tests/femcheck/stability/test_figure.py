@@ -11,7 +11,7 @@ from femcheck.stability.axis import Axis
 from femcheck.stability.ending import Ending
 from femcheck.stability.figure import LOOKS, height_of, map_figure, validity_lines
 from femcheck.stability.found import AxisFound
-from femcheck.stability.run import caption_of
+from femcheck.stability.stability_map import caption_of
 from femcheck.stability.validity import Interval
 from tests.femcheck.stability.small import an_axis, make
 

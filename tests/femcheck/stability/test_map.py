@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 import femcheck.stability.work
-from beamopt.errors import InputError
-from beamopt.study.pool import processes
+from beamopt.base.errors import InputError
+from beamopt.base.processes import processes
 from femcheck.stability.ending import Ending
 from femcheck.stability.journal import Journal
-from femcheck.stability.run import NAMES, redraw_map
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
+from femcheck.stability.stability_map import NAMES, redraw_map
 from tests.femcheck.stability.small import (
     DEADLY,
     an_axis,

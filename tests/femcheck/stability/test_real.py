@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import femcheck.check.case
+import femcheck.solved.case
 from femcheck.stability.axis import Axis, Column
 from femcheck.stability.ending import Ending
 from femcheck.stability.found import agreement_of, share_of_cell
@@ -15,7 +15,7 @@ from tests.femcheck.stability.small import DISC, make
 
 @pytest.fixture(autouse=True)
 def without_workshops(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(femcheck.check.case, "_WORKSHOPS", {})
+    monkeypatch.setattr(femcheck.solved.case, "_WORKSHOPS", {})
 
 
 def test_cells_of_a_real_row_agree_with_its_path(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.elements.energy import (
     Mesh,
     State,
@@ -22,7 +22,7 @@ from beamopt.rod.elements.mesh import (
 )
 from beamopt.rod.elements.newton import workspace
 from beamopt.rod.rod import Rod, Segment
-from tests.rod.elements.rods import (
+from tests.beamopt.rod.elements.rods import (
     BENDS,
     general,
 )

@@ -10,13 +10,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
-from beamopt.arrays import FloatArray
+from beamopt.base.arrays import FloatArray
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.law import SectionLaw, cross
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
 from beamopt.rod.solution import Method
-from tests.rod.elements.rods import (
+from tests.beamopt.rod.elements.rods import (
     BENDS,
     METHOD,
     PLANE,

@@ -10,7 +10,7 @@ from beamopt.rod.elements.method import Elements
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
 from beamopt.rod.status import RodStatus
-from tests.rod.elements.rods import (
+from tests.beamopt.rod.elements.rods import (
     BENDS,
     METHOD,
     RIGID,

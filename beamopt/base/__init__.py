@@ -1,0 +1,1 @@
+"""Arrays, errors, compiled kernels, random streams, tasks: imported by every folder."""

@@ -1,0 +1,1 @@
+"""The judgement of sections: responses, tips, loss."""

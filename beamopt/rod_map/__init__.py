@@ -1,0 +1,1 @@
+"""The stability map of the rod's methods."""

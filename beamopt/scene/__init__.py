@@ -1,0 +1,1 @@
+"""Scenes and designs, and the keys of their files."""

@@ -1,0 +1,1 @@
+"""Files: written and read, claimed folders, locks, journals, tables, checked keys."""

@@ -1,0 +1,1 @@
+"""Targets: workspaces, tables of points, trajectories."""

@@ -1,0 +1,1 @@
+"""Subjects, cases, meshes and folders that checks and predictions stand on."""
