@@ -16,6 +16,7 @@ from pydantic import BaseModel
 
 import beamopt
 import femcheck
+from beamopt.judge.judge import Judge
 from beamopt.search.algorithm import Individual
 from beamopt.storage.checked_keys import Model
 from femcheck.accuracy.ending import Tried
@@ -97,7 +98,7 @@ def drawn() -> beamopt.Design:
 
 def test_a_judge_takes_the_points_of_a_design() -> None:
     scene = beamopt.load_scene("random-section")
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     points = scene.random_points(np.random.default_rng(0))
     design = scene.design_of(points)
     assert judge([design.points]) == judge([points])
@@ -157,7 +158,8 @@ def instances() -> dict[str, object]:
         found.best.points, found.best.feature_points, found.best.moments, found.best.workspace,
         found.best.response, beamopt.PolarGrid(), beamopt.SealRules(), beamopt.Plan(),
         beamopt.Fault(beamopt.FaultKind.CUT, 1 / 3, (1 / 3, 1 / 3), (1, 2, 3), 1 / 3, 1),
-        beamopt.GeneticAlgorithm(scene), scene.judge(target), beamopt.certificate(scene, target),
+        beamopt.GeneticAlgorithm(scene), Judge.of_scene(scene, target),
+        beamopt.certificate(scene, target),
         beamopt.load_design(str(scene.target.file)).drawing[0],  # type: ignore[index]
         beamopt.SegmentChoice(share=1.0, section=found.best.model_dump(by_alias=True)),
         beamopt.find_front(scene, ["L", "mass"], population=8),

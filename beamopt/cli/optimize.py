@@ -17,12 +17,13 @@ from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
 from beamopt.judge.judge import Status
 from beamopt.reach.reach import TOLERANCE
+from beamopt.refine.folder import EarlierRefinement
 from beamopt.refine.refine import StageRecord
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import load_scene
 from beamopt.search.algorithm import Generation
 from beamopt.search.optimize import optimize
-from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.result import Optimisation
 from beamopt.search.stopping import StopReason
 from beamopt.storage.result_folder import design_file
 

@@ -14,14 +14,13 @@ from beamopt.cli.bound import gap_text
 from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from beamopt.refine.folder import KIND, write_refined_design
+from beamopt.refine.folder import KIND, EarlierRefinement, write_refined_design
 from beamopt.refine.refine import RefineStatus, StageRecord, rounds_of
 from beamopt.refine.refine_design import Refinement, refine_design
 from beamopt.scene.design import load_design
 from beamopt.scene.named import is_scene, named_design
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.search.optimize import optimize
-from beamopt.search.result import EarlierRefinement
 from beamopt.search.stopping import StopReason
 from beamopt.storage.input_file import read_json
 from beamopt.storage.old_wordings import OLD_STOP_REASONS

@@ -17,14 +17,16 @@ from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.judge.answers import Answers, Question
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
-from beamopt.scene.manufacturing_keys import FREE, MakingRules
+from beamopt.scene.scene import Scene
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
+from beamopt.section.manufacturing import FREE, MakingRules
 from beamopt.section.moments import Moments
 from beamopt.section.phenotype import Phenotypes, phenotypes
 from beamopt.section.saint_venant import section_saint_venant
 from beamopt.section.seal import UNSEALED, SealRules
 from beamopt.target.aim import Aim
+from beamopt.target.target import Target
 from beamopt.target.workspace import pressure_grid
 
 __all__ = ["Judge", "Status", "Verdict", "in_parts", "judge_all"]
@@ -104,7 +106,7 @@ class Judge:
     >>> import beamopt
     >>> import numpy as np
     >>> scene = beamopt.load_scene("random-section")
-    >>> judge: beamopt.Judge = scene.judge(scene.load_target())
+    >>> judge: beamopt.Judge = beamopt.Judge.of_scene(scene, scene.load_target())
     >>> design = scene.design_of(scene.random_points(np.random.default_rng(0)))
     >>> [verdict.status.name for verdict in judge([design.points])]
     ['JUDGED']
@@ -118,6 +120,20 @@ class Judge:
     neighbour_weight: float
     rules: SealRules = UNSEALED
     making: MakingRules = FREE
+
+    @classmethod
+    def of_scene(cls, scene: Scene, target: Target) -> Judge:
+        """Make the judge of a scene's candidates for `target`."""
+        return cls(
+            grid=scene.grid.build(),
+            wall_elements=scene.wall_elements,
+            rod=scene.climb.model,
+            levels=scene.pressures.levels,
+            aim=target.aim,
+            neighbour_weight=scene.search.neighbour_weight,
+            rules=scene.seal.rules,
+            making=scene.making.rules(scene.grid.build(), scene.actuator.length),
+        )
 
     def __repr__(self) -> str:
         sealed = "sealed" if self.rules.sealed else "unsealed"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from beamopt.base.errors import InputError
 from beamopt.bound.certificate import quick_certificate
-from beamopt.judge.judge import in_parts
+from beamopt.judge.judge import Judge, in_parts
 from beamopt.pareto.folder import KIND, begin_folder, write_front
 from beamopt.pareto.front import Front
 from beamopt.pareto.journal import FrontJournal
@@ -76,7 +76,7 @@ def find_front(
     check_generation("population", population, population, points, elements)
     search = FrontSearch(scene, objectives, population)
     target = scene.load_target()
-    judge = scene.judge(target)
+    judge = Judge.of_scene(scene, target)
     judge = replace(judge, making=judge.making.counting())
     folder = None if out is None else Path(out)
     with ExitStack() as held:

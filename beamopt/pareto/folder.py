@@ -9,7 +9,7 @@ from pathlib import Path
 from beamopt.base.provenance import provenance
 from beamopt.bound.folder import bound_summary
 from beamopt.judge.judge import Judge, Status
-from beamopt.pareto.front import Front
+from beamopt.pareto.front import Front, design_name, designs_of, front_csv
 from beamopt.pareto.scores import BEST, OBJECTIVES
 from beamopt.scene.design import Design
 from beamopt.scene.scene import Scene
@@ -19,7 +19,7 @@ from beamopt.storage.result_folder import FolderKind, clear_leftovers
 from beamopt.storage.timing import write_times
 from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 
-__all__ = ["KIND", "begin_folder", "front_csv", "write_front"]
+__all__ = ["KIND", "begin_folder", "write_front"]
 
 KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
@@ -44,8 +44,8 @@ def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = Tru
 
     What is there already stays as it is, the times too where nothing else changes.
     """
-    designs = _designs(front)
-    names = {k: _name(k) for k in designs}
+    designs = designs_of(front)
+    names = {k: design_name(k) for k in designs}
     _delete_designs(folder, names.values())
     # the table before the designs: a kill leaves none that it does not name
     texts = {"front.csv": front_csv(front, judge)}
@@ -71,42 +71,6 @@ def _delete_designs(folder: Path, wanted: Collection[str]) -> None:
     for name in set(cells).difference(wanted):
         if DESIGN.fullmatch(name):
             (folder / name).unlink(missing_ok=True)
-
-
-def _designs(front: Front) -> dict[int, Design]:
-    """Designs that get a file, by their places on the front."""
-    return {k: _design(front, k) for k in front.worth_keeping()}
-
-
-def _name(k: int) -> str:
-    return f"front-{k:03d}.json"
-
-
-def front_csv(front: Front, judge: Judge) -> str:
-    """A row a design, by L: losses [mm²], ratio, mass [g], chambers per supply, its file if any.
-
-    Of sealed designs that are kept also the L of the outline, which is what they are.
-    """
-    sealed, designs = front.scene.seal.rules.sealed, _designs(front)
-    header = "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"
-    rows = []
-    for k, one in enumerate(front.designs):
-        score, losses = one.score, one.score.verdict
-        numbers = losses.L, losses.K, losses.R, score.ratio, score.mass
-        row: list[object] = [k, *numbers, *score.chambers, _name(k) if k in designs else None]
-        if sealed:
-            row.append(judge.loss_of(designs[k].values) if k in designs else None)
-        rows.append(row)
-    return csv_text(header + (",L_of_outline" if sealed else ""), rows)
-
-
-def _design(front: Front, k: int) -> Design:
-    one, scene = front.designs[k], front.scene
-    losses = one.score.verdict
-    values = dict(zip(front.objectives, one.score.values(front.objectives), strict=True))
-    notes = {"scene": scene.name, "seed": scene.search.seed, **values, "L": losses.L, "K": losses.K}
-    notes |= {"R": losses.R} if scene.making.rules_set else {}
-    return scene.design_of(one.points, notes)
 
 
 def _history_csv(front: Front) -> str:

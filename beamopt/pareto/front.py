@@ -12,17 +12,19 @@ import numpy as np
 from beamopt.base.arrays import FloatArray
 from beamopt.base.brief import Brief
 from beamopt.bound.certificate import Certificate
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import Judge, Status
 from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
+from beamopt.scene.design import Design
 from beamopt.scene.scene import Scene
 from beamopt.search.stopping import StopReason
 from beamopt.storage.timing import Timing
+from beamopt.storage.writing import csv_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["Front"]
+__all__ = ["Front", "design_name", "designs_of", "front_csv"]
 
 MOST_DESIGNS = 30
 
@@ -116,10 +118,9 @@ class Front:
 
     def to_frame(self) -> DataFrame:
         """Losses, masses and chambers of the front's designs, as a data frame (needs pandas)."""
-        from beamopt.pareto.folder import front_csv
         from beamopt.storage.frames import frame_of
 
-        return frame_of(front_csv(self, self.scene.judge(self.scene.load_target())))
+        return frame_of(front_csv(self, Judge.of_scene(self.scene, self.scene.load_target())))
 
     def worth_keeping(self) -> list[int]:
         """Places of at most 30 designs along the front: best of each objective, knee, others."""
@@ -129,3 +130,40 @@ class Front:
         chosen = {0, self.knee, *self.values.argmin(axis=0).tolist()}
         evenly = np.linspace(0, count - 1, MOST_DESIGNS - len(chosen)).round().astype(int)
         return sorted(chosen | set(evenly.tolist()))
+
+
+def designs_of(front: Front) -> dict[int, Design]:
+    """Designs that get a file, by their places on the front."""
+    return {k: _design(front, k) for k in front.worth_keeping()}
+
+
+def design_name(k: int) -> str:
+    """Name of a design's file, by its place on the front."""
+    return f"front-{k:03d}.json"
+
+
+def front_csv(front: Front, judge: Judge) -> str:
+    """A row a design, by L: losses [mm²], ratio, mass [g], chambers per supply, its file if any.
+
+    Of sealed designs that are kept also the L of the outline, which is what they are.
+    """
+    sealed, designs = front.scene.seal.rules.sealed, designs_of(front)
+    header = "index,L,K,R,ratio,mass_g,chambers_1,chambers_2,chambers_3,design"
+    rows = []
+    for k, one in enumerate(front.designs):
+        score, losses = one.score, one.score.verdict
+        numbers = losses.L, losses.K, losses.R, score.ratio, score.mass
+        row: list[object] = [k, *numbers, *score.chambers, design_name(k) if k in designs else None]
+        if sealed:
+            row.append(judge.loss_of(designs[k].values) if k in designs else None)
+        rows.append(row)
+    return csv_text(header + (",L_of_outline" if sealed else ""), rows)
+
+
+def _design(front: Front, k: int) -> Design:
+    one, scene = front.designs[k], front.scene
+    losses = one.score.verdict
+    values = dict(zip(front.objectives, one.score.values(front.objectives), strict=True))
+    notes = {"scene": scene.name, "seed": scene.search.seed, **values, "L": losses.L, "K": losses.K}
+    notes |= {"R": losses.R} if scene.making.rules_set else {}
+    return scene.design_of(one.points, notes)

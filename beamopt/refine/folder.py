@@ -5,16 +5,16 @@ from __future__ import annotations
 import itertools
 import math
 import os
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
 from beamopt.base.provenance import provenance
 from beamopt.judge.answer_tables import paths_csv, tips_table_csv
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import Judge, Status, Verdict
 from beamopt.refine.refine_design import Refinement
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import Scene
-from beamopt.search.result import EarlierRefinement
 from beamopt.storage.input_file import read_text
 from beamopt.storage.result_folder import FolderKind, clear_leftovers
 from beamopt.storage.writing import csv_text, json_text, write_atomic
@@ -23,6 +23,7 @@ from beamopt.target.target import Target
 __all__ = [
     "KIND",
     "REFINEMENT_FILES",
+    "EarlierRefinement",
     "becomes",
     "refinement_numbers",
     "set_aside",
@@ -44,6 +45,16 @@ KIND = FolderKind("a refinement", "provenance.json", ("{",), goes_on=False)
 """Folder of a refinement that is not a search's."""
 
 
+class EarlierRefinement(Enum):
+    """Fate of a refinement in the folder of a run; the value is the text for people."""
+
+    NONE = "there was none"
+    REPLACED = "refined anew"
+    STAYS = "refined.json stays: it is of this best design"
+    BETTER = "refined.json stays: what was found now is not better"
+    SET_ASIDE = "refined.json was of an earlier best design and went to earlier-refinement-1, -2, …"
+
+
 def write_refinement(
     folder: Path, scene: Scene, target: Target, found: Refinement, *, figures: bool = True
 ) -> None:
@@ -52,7 +63,7 @@ def write_refinement(
     write_atomic(folder / "refinement.csv", stages_csv(found))
     if found.refined.after.status is not Status.JUDGED:
         return
-    question = scene.judge(target).question
+    question = Judge.of_scene(scene, target).question
     if len(target.aim):
         answers = question.of_section(found.design.values)[0]
         write_atomic(folder / "refined_tips.csv", tips_table_csv(target.aim, answers))

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from beamopt.judge.judge import Judge
 from beamopt.refine.refine import Refined, RefineStatus, StageRecord, improved, refine
 from beamopt.scene.design import Design
 from beamopt.scene.scene import Scene
@@ -85,7 +86,7 @@ def refine_points(
     callback: Callable[[StageRecord], None] | None = None,
 ) -> Refinement:
     """Refine feature points for a target; the same for the same scene, seed and points."""
-    judge, symmetry = scene.judge(target), scene.making.repair(scene.grid.build())
+    judge, symmetry = Judge.of_scene(scene, target), scene.making.repair(scene.grid.build())
     begun = time.perf_counter()
     improved(judge, points, SHORTEST, seed=0, symmetry=symmetry)  # runs every kernel once
     started = time.perf_counter()

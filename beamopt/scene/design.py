@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -34,7 +35,19 @@ from beamopt.storage.input_file import read_json
 from beamopt.storage.writing import json_text, write_atomic
 from beamopt.target.workspace import Workspace, pressure_grid
 
-__all__ = ["Design", "Grid", "Levels", "WallElements", "load_design", "section_values"]
+__all__ = [
+    "MOST_INLINE",
+    "Design",
+    "Grid",
+    "Levels",
+    "WallElements",
+    "load_design",
+    "section_values",
+    "with_sections",
+]
+
+MOST_INLINE = 4 * 2**20
+"""Most characters of all sections of segments: a folder that holds the scene has them in it."""
 
 SCHEMA = "beamopt-design/1"
 
@@ -257,8 +270,6 @@ def load_design(path: str | Path) -> Design:
     >>> beamopt.load_design(str(file)).seal.skin
     1.0
     """
-    from beamopt.scene.segment_files import with_sections
-
     file = Path(path)
     design = read_design(file)
     rules = with_sections(design.rod, file.parent)
@@ -293,3 +304,35 @@ def _found(tips: Tips, pressures: FloatArray) -> FloatArray:
         if status is not RodStatus.CONVERGED:
             raise NoEquilibriumError(at, status)
     return tips.positions
+
+
+def with_sections(rules: RodRules, folder: Path) -> RodRules:
+    """The rules with whole designs in place of their files' names: they stand on their own.
+
+    Of a file the section counts alone: its own segments are neither read nor taken along.
+
+    Raises
+    ------
+    InputError : a file can not be used, or the sections are too long together.
+    """
+    segments, left = [], MOST_INLINE
+    read: dict[str, str] = {}
+    for number, one in enumerate(rules.segments):
+        if one.file is not None:
+            if one.file not in read:
+                read[one.file] = _without_segments(read_design(folder / one.file)).json()
+            left -= len(read[one.file])
+            if left < 0:
+                said = f"sections of at most {MOST_INLINE} characters, all segments together"
+                raise InputError("", f"rod.segments[{number}]", one.file, said)
+            section = json.loads(read[one.file])
+            del section["notes"]
+            one = one.model_copy(update={"file": None, "section": section})
+        segments.append(one)
+    return rules.model_copy(update={"segments": tuple(segments)})
+
+
+def _without_segments(design: Design) -> Design:
+    if not design.rod.segments:
+        return design
+    return design.model_copy(update={"rod": design.rod.model_copy(update={"segments": ()})})

@@ -12,7 +12,6 @@ from pydantic import Field, field_validator, model_validator
 
 from beamopt.base.brief import Brief
 from beamopt.base.errors import InputError, NoEquilibriumError
-from beamopt.judge.judge import Judge
 from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.scene.actuator import Actuator, Loading, RodRules, rod_model
 from beamopt.scene.bundled import bundled_scenes
@@ -23,13 +22,13 @@ from beamopt.scene.design import (
     WallElements,
     load_design,
     section_values,
+    with_sections,
 )
 from beamopt.scene.manufacturing_keys import Making
 from beamopt.scene.overrides import overridden
 from beamopt.scene.rod_choice import Climb, climb
 from beamopt.scene.seal_keys import Seal
 from beamopt.scene.search_keys import Refining, Search, Stop
-from beamopt.scene.segment_files import with_sections
 from beamopt.scene.target_keys import TargetChoice
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
@@ -242,19 +241,6 @@ class Scene(Model):
                 known = section_saint_venant(section.grid, section.labels, model.poissons_ratio)
                 found.append(SectionValues(section.moments, known))
         return found
-
-    def judge(self, target: Target) -> Judge:
-        """What candidates are judged with."""
-        return Judge(
-            grid=self.grid.build(),
-            wall_elements=self.wall_elements,
-            rod=self.climb.model,
-            levels=self.pressures.levels,
-            aim=target.aim,
-            neighbour_weight=self.search.neighbour_weight,
-            rules=self.seal.rules,
-            making=self.making.rules(self.grid.build(), self.actuator.length),
-        )
 
 
 def load_scene(scene: str | Path, overrides: Sequence[str] = ()) -> Scene:

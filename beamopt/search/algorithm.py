@@ -39,7 +39,7 @@ class Individual:
     --------
     >>> import beamopt
     >>> scene = beamopt.load_scene("random-section", ["search.generations=0"])
-    >>> last = beamopt.run(scene, scene.judge(scene.load_target())).last
+    >>> last = beamopt.run(scene, beamopt.Judge.of_scene(scene, scene.load_target())).last
     >>> individual: beamopt.Individual = last.best_ever
     >>> individual.verdict.status.name
     'JUDGED'
@@ -67,7 +67,8 @@ class Generation:
     --------
     >>> import beamopt
     >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
-    >>> last: beamopt.Generation = beamopt.run(scene, scene.judge(scene.load_target())).last
+    >>> judge = beamopt.Judge.of_scene(scene, scene.load_target())
+    >>> last: beamopt.Generation = beamopt.run(scene, judge).last
     >>> last.index, last.evaluations
     (1, 38)
     """
@@ -102,7 +103,7 @@ class GeneticAlgorithm:
     --------
     >>> import beamopt
     >>> scene = beamopt.load_scene("random-section")
-    >>> judge = scene.judge(scene.load_target())
+    >>> judge = beamopt.Judge.of_scene(scene, scene.load_target())
     >>> search = beamopt.GeneticAlgorithm(scene)
     >>> generation = search.tell(judge(search.ask()))
     >>> search.evaluations

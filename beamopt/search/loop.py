@@ -51,7 +51,7 @@ def run(
     Parameters
     ----------
     scene : the search's settings and its reasons to stop.
-    judge : what candidates are judged with, usually `scene.judge(target)`.
+    judge : what candidates are judged with, usually `beamopt.Judge.of_scene(scene, target)`.
     journal : where verdicts are kept; those it holds already are taken instead of judging again.
     executor, workers : judge each batch in `workers` parts on this executor; the result does not
         depend on either.
@@ -68,7 +68,7 @@ def run(
     --------
     >>> import beamopt
     >>> scene = beamopt.load_scene("random-section", ["search.generations=1"])
-    >>> ended = beamopt.run(scene, scene.judge(scene.load_target()))
+    >>> ended = beamopt.run(scene, beamopt.Judge.of_scene(scene, scene.load_target()))
     >>> ended.status.name
     'GENERATIONS'
     """

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import Judge, Status
 from beamopt.refine.refine import StageRecord
 from beamopt.refine.refine_design import refine_points
 from beamopt.scene.design import Design
@@ -68,7 +68,7 @@ def optimize(
             journal = held.enter_context(Journal(folder.journal))
         ended = run(
             scene,
-            scene.judge(target),
+            Judge.of_scene(scene, target),
             journal=journal,
             executor=executor,
             workers=workers,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ from beamopt.bound.certificate import Certificate, quick_certificate
 from beamopt.judge.answers import Answers
 from beamopt.judge.judge import Judge, Verdict
 from beamopt.reach.reach import Reach
+from beamopt.refine.folder import EarlierRefinement
 from beamopt.refine.refine_design import Refinement
 from beamopt.rod.ladder import Rung
 from beamopt.rod.pressure_tree import parents_on_grid
@@ -30,17 +30,7 @@ from beamopt.target.workspace import pressure_grid
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["EarlierRefinement", "Optimisation"]
-
-
-class EarlierRefinement(Enum):
-    """Fate of a refinement in the folder of a run; the value is the text for people."""
-
-    NONE = "there was none"
-    REPLACED = "refined anew"
-    STAYS = "refined.json stays: it is of this best design"
-    BETTER = "refined.json stays: what was found now is not better"
-    SET_ASIDE = "refined.json was of an earlier best design and went to earlier-refinement-1, -2, …"
+__all__ = ["Optimisation"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +117,7 @@ class Optimisation:
 
     @cached_property
     def _judge(self) -> Judge:
-        return self.scene.judge(self.target)
+        return Judge.of_scene(self.scene, self.target)
 
     @cached_property
     def bound(self) -> Certificate:

@@ -17,6 +17,7 @@ from beamopt.judge.answer_tables import paths_csv, tips_table_csv
 from beamopt.judge.judge import Status
 from beamopt.refine.folder import (
     REFINEMENT_FILES,
+    EarlierRefinement,
     becomes,
     refinement_numbers,
     set_aside,
@@ -26,7 +27,7 @@ from beamopt.scene.scene import Scene, load_scene
 from beamopt.scene.toml_text import scene_text
 from beamopt.search.history import GenerationNumbers
 from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
-from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.result import Optimisation
 from beamopt.search.run_summary import summary
 from beamopt.storage.input_file import read_bytes, read_json
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, differences

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -9,13 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
+from beamopt.base.errors import NoEquilibriumError
+from beamopt.storage.writing import csv_text
 from femcheck.models.question import Question
 from femcheck.models.reply import Model, Reply
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["Ending", "Source", "Tried", "Within"]
+__all__ = ["Ending", "Source", "Tried", "Within", "beam_difference", "tips_csv"]
+
+TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
+DIGITS = 6  # of a millimetre
 
 
 class Ending(Enum):
@@ -101,7 +107,6 @@ class Within:
     def to_frame(self) -> DataFrame:
         """Tips with their estimated errors, beside the beam's, as a data frame (needs pandas)."""
         from beamopt.storage.frames import frame_of
-        from femcheck.accuracy.folder import tips_csv
 
         return frame_of(tips_csv(self))
 
@@ -134,3 +139,42 @@ class Within:
     def is_beam(self) -> bool:
         """True if these are the tips of a beam: a difference to the beam says nothing then."""
         return self.source in (Source.CLOSED_FORM, Source.TIGHTER)
+
+
+def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
+    """The design's own tips (n, 3) and their distances (n,) from what was found [mm].
+
+    Distances are NaN where what was found is the beam itself.
+    """
+    question = found.question
+    try:
+        beam = question.design.tips(question.pressures)
+    except NoEquilibriumError:
+        beam = np.full((len(question.pressures), 3), np.nan)
+    if found.reply is None or found.is_beam:
+        return beam, np.full(len(beam), np.nan)
+    return beam, found.reply.away(beam)
+
+
+def tips_csv(found: Within) -> str:
+    """Tips with their estimated errors, beside the beam's."""
+    return csv_text(TIPS, _tips(found))
+
+
+def _tips(found: Within) -> Iterator[tuple[object, ...]]:
+    beam, difference = beam_difference(found)
+    if found.reply is None:
+        return
+    rows = zip(
+        found.question.pressures.tolist(),
+        found.reply.tips,
+        found.estimate,
+        beam,
+        difference,
+        found.reply.endings,
+        strict=True,
+    )
+    for pressures, tip, estimate, own, away, ended in rows:
+        numbers = [*tip, estimate, *own, away]
+        rounded = [None if np.isnan(x) else round(float(x), DIGITS) + 0.0 for x in numbers]
+        yield (*pressures, *rounded, str(ended), ended.key)

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beamopt.base.arrays import FloatArray
-from beamopt.base.errors import NoEquilibriumError
 from beamopt.base.provenance import provenance
 from beamopt.storage.line_journal import LineJournal
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
 from beamopt.storage.writing import csv_text, json_text, write_atomic
-from femcheck.accuracy.ending import Ending, Within
+from femcheck.accuracy.ending import Ending, Within, tips_csv
 from femcheck.accuracy.within import Progress, RungChoice, answer_within, check_asked
 from femcheck.chart.kept import asked_of, measured_in
 from femcheck.chart.measure import Measured, key_of, written
@@ -23,7 +20,7 @@ from femcheck.models.question import Question
 from femcheck.models.reply import Model
 from femcheck.solved.folder import PACKAGES
 
-__all__ = ["beam_difference", "run_accuracy", "tips_csv"]
+__all__ = ["run_accuracy"]
 
 JOURNAL = "journal.jsonl"
 KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',))
@@ -31,9 +28,7 @@ NAMES = (
     *(JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
     "provenance.json",
 )
-TIPS = "p1,p2,p3,x,y,z,estimate_mm,beam_x,beam_y,beam_z,difference_mm,status,ended"
 TRIED = "model,unknowns,size,found,of"
-DIGITS = 6  # of a millimetre
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,21 +82,6 @@ def run_accuracy(
     return found
 
 
-def beam_difference(found: Within) -> tuple[FloatArray, FloatArray]:
-    """The design's own tips (n, 3) and their distances (n,) from what was found [mm].
-
-    Distances are NaN where what was found is the beam itself.
-    """
-    question = found.question
-    try:
-        beam = question.design.tips(question.pressures)
-    except NoEquilibriumError:
-        beam = np.full((len(question.pressures), 3), np.nan)
-    if found.reply is None or found.is_beam:
-        return beam, np.full(len(beam), np.nan)
-    return beam, found.reply.away(beam)
-
-
 def _write(found: Within, out: Path) -> None:
     found.question.design.save(out / "design.json")
     write_atomic(out / "tips.csv", tips_csv(found))
@@ -115,30 +95,6 @@ def _write(found: Within, out: Path) -> None:
     write_atomic(out / "timing.csv", csv_text("what,value,unit", times))
     write_atomic(out / "summary.json", json_text(_summary(found)))
     write_atomic(out / "provenance.json", json_text(provenance(PACKAGES)))
-
-
-def tips_csv(found: Within) -> str:
-    """Tips with their estimated errors, beside the beam's."""
-    return csv_text(TIPS, _tips(found))
-
-
-def _tips(found: Within) -> Iterator[tuple[object, ...]]:
-    beam, difference = beam_difference(found)
-    if found.reply is None:
-        return
-    rows = zip(
-        found.question.pressures.tolist(),
-        found.reply.tips,
-        found.estimate,
-        beam,
-        difference,
-        found.reply.endings,
-        strict=True,
-    )
-    for pressures, tip, estimate, own, away, ended in rows:
-        numbers = [*tip, estimate, *own, away]
-        rounded = [None if np.isnan(x) else round(float(x), DIGITS) + 0.0 for x in numbers]
-        yield (*pressures, *rounded, str(ended), ended.key)
 
 
 def _summary(found: Within) -> dict[str, Any]:

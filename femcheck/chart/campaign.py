@@ -19,12 +19,11 @@ from beamopt.plot.style import save_figure
 from beamopt.storage.line_journal import LineJournal
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
 from beamopt.storage.writing import csv_text, json_text, write_atomic
-from femcheck.chart.chart import ACCURACIES, Chart
+from femcheck.chart.chart import ACCURACIES, Chart, chart_csv
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
-from femcheck.chart.table import chart_csv
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.continuation.outcome import Status
 from femcheck.models.question import Question

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamopt.base.brief import Brief
+from beamopt.storage.writing import csv_text
 from femcheck.chart.lineup import line_up
 from femcheck.chart.measure import Measured, key_of
 from femcheck.chart.reference import Reference
@@ -18,7 +19,9 @@ from femcheck.models.solid import SolidModel
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["ACCURACIES", "Chart", "Row"]
+__all__ = ["ACCURACIES", "Chart", "Row", "chart_csv"]
+
+HEADER = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 
 ACCURACIES = (1.0, 0.1, 0.01)
 """[mm]"""
@@ -100,7 +103,6 @@ class Chart:
     def to_frame(self) -> DataFrame:
         """Error, cost and ending of every model, a row each, as a data frame (needs pandas)."""
         from beamopt.storage.frames import frame_of
-        from femcheck.chart.table import chart_csv
 
         return frame_of(chart_csv(self))
 
@@ -210,3 +212,16 @@ def _row(measured: Measured, reference: Reference | None) -> Row:
     known = np.isfinite(away)
     error = float(away[known].max()) if known.any() else np.nan
     return Row(measured, error, int((there & ~known).sum()))
+
+
+def chart_csv(chart: Chart) -> str:
+    """Error, cost and ending of every model."""
+    return csv_text(HEADER, [_cells(row) for row in chart.rows])
+
+
+def _cells(row: Row) -> tuple[object, ...]:
+    one, reply = row.measured, row.measured.reply
+    error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
+    found = int(reply.found.sum())
+    cells = (one.family, one.resolution, error, seconds, reply.unknowns or None, found)
+    return (*cells, len(reply.endings), reply.size or None, str(reply.ended), reply.ended.key)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from beamopt.base.brief import Brief
+from beamopt.storage.writing import csv_text
 from femcheck.check.comparison import Comparison
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Key
@@ -13,12 +18,13 @@ from femcheck.check.stage import Stage
 from femcheck.mesh.gmsh_section import MeshFailure
 from femcheck.mesh.quality import Quality
 from femcheck.solved.case import CaseResult
+from femcheck.solved.cells import COMPARE, both, cells, plain
 from femcheck.solved.subject import GeometrySteps, Subject
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["Checked"]
+__all__ = ["Checked", "compare_csv"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +65,6 @@ class Checked:
     def to_frame(self) -> DataFrame:
         """Tips of every solid beside the beam's (`compare.csv`), as a data frame (needs pandas)."""
         from beamopt.storage.frames import frame_of
-        from femcheck.check.tables import compare_csv
 
         return frame_of(compare_csv(self))
 
@@ -81,3 +86,33 @@ class Checked:
             and compared.unanswered == 0
             and compared.worst <= self.options.agree
         )
+
+
+def compare_csv(checked: Checked) -> str:
+    """27 rows for every solid, computed (c finite) and extrapolated (c infinite)."""
+    compared = checked.comparison
+    rows = () if compared is None else _compare_rows(compared, checked.options.law)
+    return csv_text(COMPARE, rows)
+
+
+def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]]:
+    subject = compared.subject
+    length = subject.design.actuator.length
+    beam, displacement = subject.beam_tips, compared.displacement
+    for solid in compared.solids:
+        difference = np.linalg.norm(solid.tips - beam, axis=1)
+        for row, pressures in enumerate(subject.pressures.tolist()):
+            moved = displacement[row]
+            yield (
+                law,
+                plain(solid.penalty),
+                0.0,  # the law has no Poisson coupling
+                solid.mesh,
+                *map(plain, pressures),
+                *cells(beam[row]),
+                *cells(solid.tips[row]),
+                *cells([difference[row], difference[row] / length]),
+                *cells([difference[row] / moved if moved > 0 else math.nan]),
+                *cells(solid.volume_ratios[row]),
+                *both(solid.statuses[row]),
+            )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.storage.writing import csv_text
 from beamopt.target.workspace import NODES, node_index
 from femcheck.check.schedule import Key
 from femcheck.check.stage import Stage
@@ -18,12 +19,19 @@ from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.solid.elements import ELEMENTS
 from femcheck.solved.beside_beam import STILL, BesideBeam
 from femcheck.solved.case import CaseResult
+from femcheck.solved.cells import both, cells, plain
 from femcheck.solved.subject import Subject
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["Comparison", "Tips", "compare"]
+__all__ = ["Comparison", "Tips", "compare", "table_csv"]
+
+TABLE = (
+    "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
+    "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
+    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +103,6 @@ class Comparison(BesideBeam):
     def to_frame(self) -> DataFrame:
         """Beam and solid at each combination (`table.csv`), as a data frame (needs pandas)."""
         from beamopt.storage.frames import frame_of
-        from femcheck.check.tables import table_csv
 
         return frame_of(table_csv(self))
 
@@ -197,3 +204,29 @@ def _extrapolated(low: Tips, high: Tips) -> Tips:
     reached = np.minimum(low.reached, high.reached)
     spent = low.iterations + high.iterations
     return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached, spent)
+
+
+def table_csv(compared: Comparison) -> str:
+    """27 rows: beam, solid, difference and what it is made of."""
+    subject = compared.subject
+    length = subject.design.actuator.length
+    columns = np.column_stack(
+        [
+            subject.beam_tips,
+            compared.final.tips,
+            compared.difference,
+            compared.difference / length,
+            np.where(compared.displacement > 0, compared.share, np.nan),
+            compared.discretisation,
+            compared.assumptions,
+            compared.penalty_error,
+            compared.final.volume_ratios,
+        ]
+    )
+    pressures = subject.pressures.tolist()
+    final = compared.final
+    rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
+    return csv_text(
+        TABLE,
+        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
+    )

@@ -9,35 +9,12 @@ from typing import Any
 import numpy as np
 
 from beamopt.storage.writing import csv_text, json_text
-from femcheck.check.checked import Checked
-from femcheck.check.comparison import Comparison
-from femcheck.continuation.ended import Ended
+from femcheck.check.checked import Checked, compare_csv
+from femcheck.check.comparison import Comparison, table_csv
 from femcheck.continuation.outcome import Status
+from femcheck.solved.cells import DIGITS
 
-__all__ = [
-    "COMPARE",
-    "both",
-    "cells",
-    "compare_csv",
-    "plain",
-    "summary",
-    "table_csv",
-    "tables_of",
-    "verdict",
-]
-
-DIGITS = 6  # of a millimetre or a share: coarser than rounding, finer than any mesh
-
-COMPARE = (
-    "law,c,nu,mesh,p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,"
-    "difference_of_length,difference_of_displacement,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended"
-)
-TABLE = (
-    "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
-    "difference_of_displacement,discretisation_mm,assumptions_mm,penalty_mm,"
-    "volume_ratio_1,volume_ratio_2,volume_ratio_3,status,ended,iterations"
-)
+__all__ = ["summary", "tables_of", "verdict"]
 
 
 def tables_of(checked: Checked) -> dict[str, str | None]:
@@ -49,78 +26,6 @@ def tables_of(checked: Checked) -> dict[str, str | None]:
         "summary.json": json_text(summary(checked)),
         "timing.csv": csv_text("what,value,unit", _timing(checked)),
     }
-
-
-def compare_csv(checked: Checked) -> str:
-    """27 rows for every solid, computed (c finite) and extrapolated (c infinite)."""
-    compared = checked.comparison
-    rows = () if compared is None else _compare_rows(compared, checked.options.law)
-    return csv_text(COMPARE, rows)
-
-
-def _compare_rows(compared: Comparison, law: str) -> Iterator[tuple[object, ...]]:
-    subject = compared.subject
-    length = subject.design.actuator.length
-    beam, displacement = subject.beam_tips, compared.displacement
-    for solid in compared.solids:
-        difference = np.linalg.norm(solid.tips - beam, axis=1)
-        for row, pressures in enumerate(subject.pressures.tolist()):
-            moved = displacement[row]
-            yield (
-                law,
-                plain(solid.penalty),
-                0.0,  # the law has no Poisson coupling
-                solid.mesh,
-                *map(plain, pressures),
-                *cells(beam[row]),
-                *cells(solid.tips[row]),
-                *cells([difference[row], difference[row] / length]),
-                *cells([difference[row] / moved if moved > 0 else math.nan]),
-                *cells(solid.volume_ratios[row]),
-                *both(solid.statuses[row]),
-            )
-
-
-def table_csv(compared: Comparison) -> str:
-    """27 rows: beam, solid, difference and what it is made of."""
-    subject = compared.subject
-    length = subject.design.actuator.length
-    columns = np.column_stack(
-        [
-            subject.beam_tips,
-            compared.final.tips,
-            compared.difference,
-            compared.difference / length,
-            np.where(compared.displacement > 0, compared.share, np.nan),
-            compared.discretisation,
-            compared.assumptions,
-            compared.penalty_error,
-            compared.final.volume_ratios,
-        ]
-    )
-    pressures = subject.pressures.tolist()
-    final = compared.final
-    rows = zip(pressures, columns, final.statuses, final.iterations.tolist(), strict=True)
-    return csv_text(
-        TABLE,
-        [(*map(plain, at), *cells(row), *both(status), spent) for at, row, status, spent in rows],
-    )
-
-
-def both(status: Status) -> tuple[str, str]:
-    """Cells of the columns "status" and "ended": the text for people, the key for programs."""
-    return status.value, Ended(status).key
-
-
-def plain(value: float) -> object:
-    """Whole numbers without a point, infinity as inf."""
-    return int(value) if float(value).is_integer() else value
-
-
-def cells(values: Any) -> list[object]:
-    """Rounded, so that the last bits of a solver do not show; empty where there is no answer."""
-    rounded = [round(float(value), DIGITS) + 0.0 for value in values]
-    return [None if math.isnan(value) else value for value in rounded]
 
 
 def verdict(checked: Checked) -> str:

@@ -13,8 +13,8 @@ from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
-from femcheck.accuracy.ending import Within
-from femcheck.accuracy.folder import beam_difference, run_accuracy
+from femcheck.accuracy.ending import Within, beam_difference
+from femcheck.accuracy.folder import run_accuracy
 from femcheck.accuracy.within import RungChoice
 from femcheck.chart.chart import seconds_text
 from femcheck.cli.request import RunRequest

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from beamopt.cli.exit_codes import ExitCode, joined
-from femcheck.accuracy.ending import Ending, Within
-from femcheck.accuracy.folder import beam_difference
+from femcheck.accuracy.ending import Ending, Within, beam_difference
 from femcheck.chart.chart import Chart
 from femcheck.check.checked import Checked
 from femcheck.continuation.ended import ReplyStatus

@@ -10,16 +10,15 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.storage.writing import csv_text, json_text
-from femcheck.check.tables import DIGITS, both, cells, plain
 from femcheck.continuation.ended import Ended
 from femcheck.material.catalogue import constants_of
 from femcheck.material.isotropic import Isotropic
 from femcheck.material.law import Law
-from femcheck.prediction.comparison_table import compare_csv, ratios_of, stretch_cells
-from femcheck.prediction.prediction import Prediction
+from femcheck.prediction.prediction import Prediction, compare_csv, ratios_of, stretch_cells
 from femcheck.prediction.ray_trace import TRACK
 from femcheck.prediction.two_meshes import AGREE, GROWTH, MARGIN, Agreement, RayEnds
 from femcheck.prediction.verdict import advice, verdict
+from femcheck.solved.cells import DIGITS, both, cells, plain
 
 __all__ = ["tables_of"]
 

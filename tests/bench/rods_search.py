@@ -64,7 +64,7 @@ def _searched(name: str, generations: int) -> Optimisation:
 
 def _parts(result: Optimisation) -> Iterator[Measured]:
     """Each part on sections of first and last generation that have material and equilibrium."""
-    judge = result.scene.judge(result.target)
+    judge = Judge.of_scene(result.scene, result.target)
     first = GeneticAlgorithm(result.scene).ask()
     known = [*zip(first, judge(first), strict=True)]
     known += [(one.points, one.verdict) for one in result.last.population]

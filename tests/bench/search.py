@@ -9,6 +9,7 @@ from contextlib import suppress
 from dataclasses import astuple, dataclass
 
 from beamopt.bound.certificate import quick_certificate
+from beamopt.judge.judge import Judge
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.storage.line_journal import LineJournal
 from beamopt.storage.writing import csv_text, write_atomic
@@ -57,7 +58,7 @@ def measure() -> Iterator[Measured]:
 
 def curve(method: Method, scene: Scene, seed: int, budget: int) -> tuple[Mark, ...]:
     """The marks of one search, on any processor time, with at most `budget` sections judged."""
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     tape = Tape(budget, (PAPERS,))
     with suppress(BudgetSpentError), counted_flips(tape):
         method(with_search(scene, {"seed": seed}), TapedJudge.of(judge, tape))

@@ -83,7 +83,9 @@ def test_a_refinement_begins_with_the_first_of_the_population(scene: Scene) -> N
 def test_a_tape_ends_a_search_at_its_budget_and_marks_what_it_is_asked_to(scene: Scene) -> None:
     tape = Tape(50, (7, 33))
     with suppress(BudgetSpentError):
-        METHODS["random search"](scene, TapedJudge.of(scene.judge(scene.load_target()), tape))
+        METHODS["random search"](
+            scene, TapedJudge.of(Judge.of_scene(scene, scene.load_target()), tape)
+        )
     marks = tape.finished()
     assert marks[-1].evaluations == 50
     assert {7, 33} <= {mark.evaluations for mark in marks}
@@ -93,7 +95,7 @@ def test_a_tape_ends_a_search_at_its_budget_and_marks_what_it_is_asked_to(scene:
 
 
 def test_flips_are_those_that_a_refinement_says_it_proposed(scene: Scene) -> None:
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     points = next(random_starts(scene))
     refined = refine(judge, points, scene.refine, seed=scene.search.seed)
     marks = curve(METHODS["refine"], scene, scene.search.seed, 10_000)
@@ -104,7 +106,7 @@ def test_flips_are_those_that_a_refinement_says_it_proposed(scene: Scene) -> Non
 
 
 def test_a_taped_judge_gives_the_same_verdicts(scene: Scene) -> None:
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     candidates = [scene.random_points(np.random.default_rng([k])) for k in range(5)]
     tape = Tape(10)
     assert TapedJudge.of(judge, tape)(candidates) == judge(candidates)
@@ -115,7 +117,7 @@ def test_a_taped_judge_gives_the_same_verdicts(scene: Scene) -> None:
 
 def test_outlines_are_counted_but_not_compared_with_rasters() -> None:
     scene = load_scene("sealed-section")
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     points = scene.random_points(np.random.default_rng([1]))
     tape = Tape(10)
     taped = TapedJudge.of(judge, tape)

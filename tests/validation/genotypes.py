@@ -99,7 +99,7 @@ KINDS: tuple[Maker, ...] = (
 
 def _judge() -> Judge:
     scene = load_scene("hand-drawn-workspace")
-    return scene.judge(scene.load_target())
+    return Judge.of_scene(scene, scene.load_target())
 
 
 def _without_answer(judge: Judge, batch: list[FeaturePoints]) -> int:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from beamopt.judge.judge import Judge
 from beamopt.refine.refine import RefineStatus
 from beamopt.refine.refine_design import refine_design
 from beamopt.scene.design import Design, load_design
@@ -138,7 +139,7 @@ def rows_of(case: Case, count: int) -> Iterator[Row]:
 
 def written(scene: Scene, case: Case, seed: int, folder: Path) -> Design:
     """The first design of this kind and seed that can be judged, as read from its file."""
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     for attempt in range(100):
         rng = np.random.default_rng([seed, attempt])
         points = case.kind(scene, rng)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.judge.judge import Status, judge_all
+from beamopt.judge.judge import Judge, Status, judge_all
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.scene.scene import load_scene
@@ -14,7 +14,7 @@ from tests.validation import symmetry
 
 SCENE = load_scene("hand-drawn-section")
 TARGET = SCENE.load_target()
-JUDGE = SCENE.judge(TARGET)
+JUDGE = Judge.of_scene(SCENE, TARGET)
 
 
 @pytest.fixture(scope="module")
@@ -52,13 +52,13 @@ def test_executors_and_workers_change_nothing(candidates: list[FeaturePoints]) -
 def test_the_targets_own_section_has_no_loss() -> None:
     scene = load_scene("random-section")
     points = scene.random_points(np.random.default_rng([scene.target.seed]))
-    assert scene.judge(scene.load_target())([points])[0].L < 1e-18
+    assert Judge.of_scene(scene, scene.load_target())([points])[0].L < 1e-18
 
 
 def test_a_sealed_scene_judges_sealed_sections(candidates: list[FeaturePoints]) -> None:
     scene = load_scene("sealed-section")
     target = scene.load_target()
-    for points, verdict in zip(candidates, scene.judge(target)(candidates), strict=True):
+    for points, verdict in zip(candidates, Judge.of_scene(scene, target)(candidates), strict=True):
         design = scene.design_of(points)
         assert not design.section.labels[[0, -1]].any()
         response = linear_response(design.section.moments, design.actuator.youngs_modulus)
@@ -72,12 +72,12 @@ def test_a_sealed_section_without_a_chamber_left_is_judged() -> None:
     """A chamber too small after sealing leaves a rod that does not move."""
     scene = load_scene("sealed-section", ["seal.smallest_chamber=1000000"])
     points = scene.random_points(np.random.default_rng([0]))
-    verdict = scene.judge(TARGET)([points])[0]
+    verdict = Judge.of_scene(scene, TARGET)([points])[0]
     still = np.tile([0.0, 0.0, 100.0], (27, 1))
     assert verdict.status is Status.JUDGED
     assert pytest.approx(loss(still, TARGET.workspace.tips), rel=1e-12) == verdict.L
     air = FeaturePoints([15.0], [0.0], [2])  # with a skin this is two tubes, no longer nothing
-    assert load_scene("sealed-section").judge(TARGET)([air])[0].status is Status.JUDGED
+    assert Judge.of_scene(load_scene("sealed-section"), TARGET)([air])[0].status is Status.JUDGED
 
 
 def test_no_feature_point_and_no_material_are_statuses() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import Judge, Status, Verdict
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.scene.toml_text import scene_text
 from beamopt.search.algorithm import GeneticAlgorithm
@@ -64,10 +64,10 @@ def test_without_rules_nothing_is_other_than_before(name: str, tmp_path: Path) -
 def test_too_many_chambers_are_rejected() -> None:
     scene = scene_with("making.chambers=[2,2,2]", "making.chambers_rule='reject'", *FEW)
     candidates = random_candidates(scene, 40)
-    verdicts = scene.judge(scene.load_target())(candidates)
+    verdicts = Judge.of_scene(scene, scene.load_target())(candidates)
     free = scene_with(*FEW)
     for points, verdict, plain in zip(
-        candidates, verdicts, free.judge(free.load_target())(candidates), strict=True
+        candidates, verdicts, Judge.of_scene(free, free.load_target())(candidates), strict=True
     ):
         if max(scene.design_of(points).section.pieces.chambers) > 2:
             assert verdict == Verdict(np.inf, np.inf, Status.TOO_MANY_CHAMBERS)
@@ -88,8 +88,8 @@ def test_weighted_rules_add_exactly_what_they_weigh() -> None:
     )
     scene, free = scene_with(*keys), scene_with()
     candidates = random_candidates(scene)
-    verdicts = scene.judge(scene.load_target())(candidates)
-    plain = free.judge(free.load_target())(candidates)
+    verdicts = Judge.of_scene(scene, scene.load_target())(candidates)
+    plain = Judge.of_scene(free, free.load_target())(candidates)
     images = scene.making.images(scene.grid.build())
     shares = phenotypes(scene.grid.build(), candidates, 4, symmetry=images).asymmetry
     for points, verdict, before, share in zip(candidates, verdicts, plain, shares, strict=True):
@@ -128,7 +128,7 @@ def test_every_candidate_of_a_search_is_symmetric(symmetry: str, methods: tuple[
     )
     images = scene.making.repair(scene.grid.build())
     assert images is not None
-    search, judge = GeneticAlgorithm(scene), scene.judge(scene.load_target())
+    search, judge = GeneticAlgorithm(scene), Judge.of_scene(scene, scene.load_target())
     seen: set[str] = set()
     while search.generation <= 3:
         for points in search.ask():
@@ -191,7 +191,10 @@ def test_with_rules_a_cut_journal_ends_in_the_same_bytes(
         if entry[1] is not None
     ]
     assert {len(entry) for entry in entries} == {4}
-    assert any(entry[3] > 0 for entry in entries) == scene.judge(scene.load_target()).making.weighs
+    assert (
+        any(entry[3] > 0 for entry in entries)
+        == Judge.of_scene(scene, scene.load_target()).making.weighs
+    )
     for k, cut in enumerate((len(journal) // 3, -100)):
         folder = tmp_path / f"cut-{k}"
         optimize(scene, folder, figures=False)

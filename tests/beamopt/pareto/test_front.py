@@ -43,7 +43,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def counting_judge(scene: Scene) -> Judge:
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     return replace(judge, making=judge.making.counting())
 
 

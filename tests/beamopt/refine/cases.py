@@ -65,7 +65,7 @@ def scene_of(name: str, *overrides: str) -> Scene:
 @lru_cache
 def judge_of(name: str = "random-section", *overrides: str) -> Judge:
     scene = scene_of(name, *(overrides or SMALL))
-    return scene.judge(scene.load_target())
+    return Judge.of_scene(scene, scene.load_target())
 
 
 def random_points(seed: int, name: str = "random-section", *overrides: str) -> FeaturePoints:

@@ -12,15 +12,16 @@ import pytest
 import beamopt
 from beamopt.base.errors import InputError
 from beamopt.cli.application import run
+from beamopt.judge.judge import Judge
 from beamopt.outline.faults import summaries
-from beamopt.refine.folder import REFINEMENT_FILES
+from beamopt.refine.folder import REFINEMENT_FILES, EarlierRefinement
 from beamopt.refine.refine import RefineStatus
 from beamopt.refine.refine_design import refine_design
 from beamopt.refine.truth import View, judged_on
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import load_scene
 from beamopt.search.optimize import optimize
-from beamopt.search.result import EarlierRefinement, Optimisation
+from beamopt.search.result import Optimisation
 from beamopt.search.stopping import StopReason
 from beamopt.storage.result_folder import design_file
 from tests.validation.resume import content, everything
@@ -302,7 +303,7 @@ def test_a_design_is_made_as_symmetric_as_the_scene_asks(rounds: str) -> None:
 def test_chambers_are_counted_on_the_outline_where_that_counts() -> None:
     keys = ["seal.skin=1.0", "seal.wall=0.9", "making.chambers=[9, 9, 9]", *KEYS]
     scene = load_scene("random-section", keys)
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     differ = 0
     for seed in range(12):
         points = scene.random_points(np.random.default_rng(seed))

@@ -12,7 +12,7 @@ import pytest
 
 from beamopt.base.errors import InputError, NoEquilibriumError
 from beamopt.cli.application import run
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import Judge, Status
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
@@ -87,7 +87,7 @@ def test_a_scene_without_loads_is_bit_for_bit_the_arc() -> None:
     target = plain.load_target()
     np.testing.assert_array_equal(target.workspace.tips, same.load_target().workspace.tips)
     points = [plain.random_points(np.random.default_rng([k])) for k in range(6)]
-    assert plain.judge(target)(points) == same.judge(target)(points)
+    assert Judge.of_scene(plain, target)(points) == Judge.of_scene(same, target)(points)
     design = plain.design_of(points[0])
     assert "loads" not in design.json()
     assert "rod" not in design.json()
@@ -259,7 +259,7 @@ def test_a_section_that_can_not_carry_itself_is_no_candidate() -> None:
     with pytest.raises(InputError, match="the target's section has no tip at 0, 0, 0 kPa: buckled"):
         scene.load_target()
     target = load_scene("upright-column").load_target()
-    verdict = scene.judge(target)([scene.random_points(np.random.default_rng([1]))])[0]
+    verdict = Judge.of_scene(scene, target)([scene.random_points(np.random.default_rng([1]))])[0]
     assert verdict.status is Status.NO_EQUILIBRIUM
     assert math.isinf(verdict.L)
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import Judge, Status, Verdict
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.search.algorithm import GeneticAlgorithm, Stage
 
@@ -89,7 +89,7 @@ def test_initial_populations_follow_from_the_seed_alone() -> None:
 def test_the_loss_falls(methods: tuple[str, str]) -> None:
     overrides = [f"search.recombination={methods[0]}", f"search.mutation={methods[1]}"]
     scene = load_scene("hand-drawn-section", overrides)
-    search, judge = GeneticAlgorithm(scene), scene.judge(scene.load_target())
+    search, judge = GeneticAlgorithm(scene), Judge.of_scene(scene, scene.load_target())
     records = []
     while len(records) < 41:
         record = search.tell(judge(search.ask()))

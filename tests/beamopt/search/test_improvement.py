@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beamopt.base.processes import in_process
+from beamopt.judge.judge import Judge
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.search.algorithm import GeneticAlgorithm, Stage
 from beamopt.search.improvement import LITTLE, Improvement
@@ -28,7 +29,7 @@ def memetic(*more: str) -> Scene:
 
 def test_the_best_are_improved_after_mutation_and_never_lose_their_place() -> None:
     scene = memetic()
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     search = GeneticAlgorithm(scene, Improvement(judge, scene))
     before: list[float] = []
     stages = []
@@ -47,7 +48,7 @@ def test_the_best_are_improved_after_mutation_and_never_lose_their_place() -> No
 
 def test_every_section_that_was_judged_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     judged = []
-    measured = type(Scene().judge(Scene().load_target())).measured
+    measured = type(Judge.of_scene(Scene(), Scene().load_target())).measured
 
     def counted(self, candidates):  # type: ignore[no-untyped-def]
         judged.append(len(candidates))
@@ -61,7 +62,7 @@ def test_every_section_that_was_judged_is_counted(monkeypatch: pytest.MonkeyPatc
 
 def test_evaluations_of_the_next_generation_are_not_exceeded() -> None:
     scene = memetic()
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     search = GeneticAlgorithm(scene, Improvement(judge, scene))
     search.tell(judge(search.ask()))
     before, allowed = search.evaluations, search.next_evaluations
@@ -101,7 +102,7 @@ def test_a_memetic_search_goes_on_to_the_same_bytes(tmp_path: Path, workers: int
 
 def test_an_improvement_depends_on_generation_and_index_alone() -> None:
     scene = memetic()
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     improve = Improvement(judge, scene)
     points = scene.random_points(np.random.default_rng(4))
     digests = {

@@ -10,6 +10,7 @@ import pytest
 
 from beamopt.base.errors import InputError
 from beamopt.cli.application import run
+from beamopt.judge.judge import Judge
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import Scene, load_scene
@@ -126,7 +127,7 @@ def test_a_loaded_rod_follows_a_path() -> None:
     keys = [f'target.paths=["{SPIRAL}"]', 'target.kind="paths"', "target.path_step=60"]
     scene = load_scene("spiral", [*keys, "loads.density=1070", "rod.rung=loaded"])
     target = scene.load_target()
-    judge = scene.judge(target)
+    judge = Judge.of_scene(scene, target)
     points = scene.random_points(np.random.default_rng([1]))
     (verdict,) = judge([points])
     design = scene.design_of(points)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beamopt.base.errors import InputError
+from beamopt.judge.judge import Judge
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
@@ -50,9 +51,9 @@ def test_the_27_rows_as_pairs_are_the_workspace(tmp_path: Path) -> None:
     named = f'target.file="{tmp_path / "pairs.csv"}"'
     points = load_scene("hand-drawn-workspace", ['target.kind="points"', named])
     plain = load_scene("hand-drawn-workspace")
-    assert points.judge(points.load_target())(candidates()) == plain.judge(plain.load_target())(
-        candidates()
-    )
+    assert Judge.of_scene(points, points.load_target())(candidates()) == Judge.of_scene(
+        plain, plain.load_target()
+    )(candidates())
 
 
 def test_the_order_of_rows_makes_no_difference(tmp_path: Path) -> None:
@@ -65,7 +66,7 @@ def test_the_order_of_rows_makes_no_difference(tmp_path: Path) -> None:
 
 def test_weights_scale_what_a_row_adds(tmp_path: Path) -> None:
     """L of all rows is the weighted sum of each row's own; of a row twice, twice."""
-    judge = load_scene("pairs").judge(load_scene("pairs").load_target())
+    judge = Judge.of_scene(load_scene("pairs"), load_scene("pairs").load_target())
     moments = judge.measured(candidates()).moments
     rng = np.random.default_rng(0)
     weights = rng.uniform(0, 3, len(PAIRS) - 2)
@@ -114,7 +115,7 @@ def test_directions_count_in_a_verdict() -> None:
     target = scene.load_target()
     assert target.aim.turns
     for rung in ("arc", "chain"):
-        judge = load_scene("pairs", [f"rod.rung={rung}"]).judge(target)
+        judge = Judge.of_scene(load_scene("pairs", [f"rod.rung={rung}"]), target)
         for points, verdict in zip(candidates(), judge(candidates()), strict=True):
             design = scene.design_of(points)
             found = design.solve(target.aim.pressures)
@@ -128,7 +129,7 @@ def test_directions_count_in_a_verdict() -> None:
 def test_the_bundled_pairs_belong_to_a_section() -> None:
     """Its file has four digits after the point, and directions five."""
     scene = load_scene("pairs")
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     from beamopt.scene.design import load_design
 
     drawn = load_design(SCENES["hand-drawn-section"].with_name("hand_drawn_section.json"))

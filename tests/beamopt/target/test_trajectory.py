@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from beamopt.base.errors import InputError
+from beamopt.judge.judge import Judge
 from beamopt.rod.arc import arc_tip_jacobian_by_response, arc_tips
 from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.scene.bundled import bundled_scenes
@@ -73,7 +74,7 @@ def test_a_base_frame_is_transformed_away(tmp_path: Path) -> None:
 
 def test_the_bundled_spiral_is_inside_a_workspace() -> None:
     scene = load_scene("spiral")
-    judge = scene.judge(scene.load_target())
+    judge = Judge.of_scene(scene, scene.load_target())
     assert judge.loss_of(DRAWN.values) < 1e-12
     still = Moments(DRAWN.moments.raw * [[1], [0], [0], [0]])
     away = np.linalg.norm(judge.aim.paths - [0, 0, 100], axis=1)
@@ -89,7 +90,7 @@ def test_paths_add_to_any_target() -> None:
     both = load_scene("hand-drawn-workspace", spiral)
     alone = load_scene("spiral", ["target.path_step=4"])
     points = [scene.random_points(np.random.default_rng([k])) for k in range(5)]
-    judged = [one.judge(one.load_target())(points) for one in (scene, both, alone)]
+    judged = [Judge.of_scene(one, one.load_target())(points) for one in (scene, both, alone)]
     for plain, whole, paths in zip(*judged, strict=True):
         assert pytest.approx(plain.L + 2.5 * paths.L, rel=1e-12) == whole.L
         assert whole.K == plain.K
@@ -110,7 +111,7 @@ def test_settled_rows_have_the_loss_and_its_gradient() -> None:
     target = scene.load_target()
     far = target.aim.paths[::8] * [1.8, 1.8, 1.02]
     aim = replace(target.aim, paths=np.concatenate([target.aim.paths[::16], far]), path_weight=1.7)
-    judge = replace(scene.judge(target), aim=aim)
+    judge = replace(Judge.of_scene(scene, target), aim=aim)
     B = linear_response(DRAWN.moments, 300.0).matrix * rng.uniform(0.8, 1.2, (3, 3))
 
     def judged(matrix: np.ndarray) -> tuple[float, np.ndarray]:

@@ -9,8 +9,8 @@ import pytest
 
 from beamopt.base.errors import InputError
 from beamopt.scene.named import named_design
-from femcheck.accuracy.ending import Ending
-from femcheck.accuracy.folder import NAMES, beam_difference, run_accuracy
+from femcheck.accuracy.ending import Ending, beam_difference
+from femcheck.accuracy.folder import NAMES, run_accuracy
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of

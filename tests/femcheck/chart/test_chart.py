@@ -19,13 +19,12 @@ from beamopt.storage.line_journal import with_digest
 from femcheck.chart import campaign as run
 from femcheck.chart import lineup
 from femcheck.chart.campaign import Budget, run_chart
-from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
+from femcheck.chart.chart import ACCURACIES, HEADER, Chart, Row, seconds_text
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
 from femcheck.chart.measure import Measured, is_final, key_of, made_with, measure, read, written
 from femcheck.chart.reference import Limit, Reference
-from femcheck.chart.table import HEADER
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended, NoReply
 from femcheck.continuation.outcome import Status
