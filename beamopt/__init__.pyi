@@ -5,7 +5,7 @@ from .base.errors import NoEquilibriumError as NoEquilibriumError
 from .bound.certificate import Certificate as Certificate
 from .bound.certificate import certificate as certificate
 from .judge.judge import Judge as Judge
-from .judge.judge import Status as Status
+from .judge.judge import JudgeStatus as JudgeStatus
 from .judge.judge import Verdict as Verdict
 from .outline.faults import Fault as Fault
 from .outline.faults import FaultKind as FaultKind

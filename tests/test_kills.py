@@ -21,7 +21,7 @@ from beamopt.base.processes import in_process
 from beamopt.bound.certificate import Certificate, certificate
 from beamopt.bound.folder import claimed_for_bound, write_bound
 from beamopt.chart.chart import run_chart
-from beamopt.chart.measure import Limits
+from beamopt.chart.measure import TimeLimits
 from beamopt.comparators.shooting import Shooting
 from beamopt.export.export_design import ExportOptions, export_design
 from beamopt.pareto.find_front import find_front
@@ -115,7 +115,7 @@ def refined() -> Refinement:
 
 def chart_of_rods(folder: Path) -> None:
     few = (Shooting(resolutions=(8,)),)
-    once = Limits(repeats=1, spent=0.0)
+    once = TimeLimits(repeats=1, spent=0.0)
     run_chart(load_scene("gravity"), folder, methods=few, limits=once, callback=moment)
 
 

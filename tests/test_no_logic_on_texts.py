@@ -23,7 +23,8 @@ TEXTS = {"reason", "reasons", "status", "statuses", "ending", "endings", "ended"
 TEXTS |= {"text", "texts", "law_text", "title", "verdict", "advice"}
 
 ENUMS = {"Agreement", "BoundStatus", "Ending", "FaultKind", "MeshProblem", "NoReply", "PathStatus"}
-ENUMS |= {"ReachStatus", "RefineStatus", "RodStatus", "Severity", "Stage", "Status", "StopReason"}
+ENUMS |= {"ReachStatus", "RefineStatus", "RodStatus", "Severity", "Status", "StopReason"}
+ENUMS |= {"CandidateKind", "JudgeStatus", "MapEnding", "MethodVerdict", "RefineStage"}
 ENUMS |= {"Verdict", "Witness"}
 """Whose values are texts: `Witness("both")` looks a text up; `Witness["BOTH"]` is a name."""
 

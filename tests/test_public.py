@@ -18,9 +18,9 @@ import beamopt
 import femcheck
 from beamopt.judge.judge import Judge
 from beamopt.search.algorithm import Individual
-from beamopt.storage.checked_keys import Model
+from beamopt.storage.checked_keys import CheckedKeys
 from femcheck.accuracy.ending import Tried
-from femcheck.check.comparison import Tips
+from femcheck.check.comparison import SolidTips
 from femcheck.continuation.ended import Ended
 from femcheck.models.beam import RodOnOutline
 from femcheck.models.reply import Reply
@@ -141,7 +141,9 @@ def instances() -> dict[str, object]:
     run = beamopt.Plan().runs()[0]
     nan = np.full((27, 3), np.nan)
     status = (femcheck.Status.CONVERGED,) * 27
-    tips = Tips("standard", np.inf, nan, nan, status, np.zeros(27), np.zeros(27, dtype=np.int64))
+    tips = SolidTips(
+        "standard", np.inf, nan, nan, status, np.zeros(27), np.zeros(27, dtype=np.int64)
+    )
     subject = small_subject()
     compared = femcheck.Comparison(subject, (tips, replace(tips, mesh="coarse")), 2.0, 1.0)
     failure = femcheck.MeshFailure(femcheck.MeshProblem.CRASHED, "said " * 1000)
@@ -202,7 +204,7 @@ def test_a_representation_says_the_loss() -> None:
 
 
 def test_an_own_method_of_a_hidden_name_is_shown() -> None:
-    class WithText(Model):
+    class WithText(CheckedKeys):
         def json(self) -> str:  # type: ignore[override]
             """Return text."""
             return ""

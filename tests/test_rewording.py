@@ -17,11 +17,11 @@ from beamopt.base.errors import InputError
 from beamopt.cli.refine import _check_ended
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
-from beamopt.rod_map.cases import Kind as LoadKind
+from beamopt.rod_map.cases import CaseKind as LoadKind
 from beamopt.rod_map.cases import case_of
-from beamopt.rod_map.journal import Journal as RodJournal
-from beamopt.rod_map.sampling import Row, Sample
-from beamopt.rod_map.verdict import Verdict, Witness
+from beamopt.rod_map.journal import SampleJournal as RodJournal
+from beamopt.rod_map.sampling import MethodSample, Sample
+from beamopt.rod_map.verdict import MethodVerdict, Witness
 from beamopt.scene.scene import load_scene
 from beamopt.search.optimize import optimize
 from beamopt.storage.old_wordings import OLD_STOP_REASONS
@@ -37,16 +37,16 @@ from femcheck.models.solid import SolidModel
 from femcheck.regression.baseline import read_baseline, write_baseline
 from femcheck.regression.held import LADDER, is_late
 from femcheck.regression.held_design import find_design
-from femcheck.regression.measure import Measured as MeasuredRungs
+from femcheck.regression.measure import MeasuredPart as MeasuredRungs
 from femcheck.regression.moved import compare
 from femcheck.regression.regression import regress
-from femcheck.report.folders import Kind as FolderKind
+from femcheck.report.folders import ContentKind as FolderKind
 from femcheck.report.run_view import view_of
 from femcheck.report.solid_run import read_solid_run
 from femcheck.report.wording import meaning
 from femcheck.solid.winding import Wound
 from femcheck.stability.axes import AXES
-from femcheck.stability.journal import Journal
+from femcheck.stability.journal import MapJournal
 from tests.femcheck.check.small import here, quick_options, small_subject
 from tests.femcheck.made_up import NEO, MadeUp, powers, question_of
 from tests.femcheck.regression.small import held, saved
@@ -231,9 +231,9 @@ def test_a_report_says_the_same_of_a_folder(tmp_path: Path) -> None:
 
 
 def test_the_map_of_stability_is_read() -> None:
-    before = Journal(REPORTS / "stability" / "journal.jsonl", AXES).results
+    before = MapJournal(REPORTS / "stability" / "journal.jsonl", AXES).results
     with reworded():
-        after = Journal(REPORTS / "stability" / "journal.jsonl", AXES).results
+        after = MapJournal(REPORTS / "stability" / "journal.jsonl", AXES).results
     assert {key: one.ending for key, one in before.items()} == {
         key: one.ending for key, one in after.items()
     }
@@ -256,14 +256,16 @@ def test_a_search_goes_on_in_the_same_bytes(tmp_path: Path) -> None:
 def test_the_map_of_rods_is_read(witness: Witness, tmp_path: Path) -> None:
     """Also by another wording than it was written with, and as earlier versions wrote it."""
     asked = {"seed": 0}
-    rows = (Row(case_of(0, 0), "modes", 4, Verdict.RIGHT, RodStatus.BUCKLED, 0.5, 1.0),)
+    rows = (
+        MethodSample(case_of(0, 0), "modes", 4, MethodVerdict.RIGHT, RodStatus.BUCKLED, 0.5, 1.0),
+    )
     sample = Sample(case_of(0, 0), witness, RodStatus.CONVERGED, 0.25, rows, 2.0)
     RodJournal(tmp_path / "a", asked).add(sample)
     with reworded():
         (again,) = RodJournal(tmp_path / "a", asked).samples.values()
         RodJournal(tmp_path / "b", asked).add(sample)
     assert (again.witness, again.truth) == (witness, RodStatus.CONVERGED)
-    assert (again.rows[0].verdict, again.rows[0].status) == (Verdict.RIGHT, RodStatus.BUCKLED)
+    assert (again.rows[0].verdict, again.rows[0].status) == (MethodVerdict.RIGHT, RodStatus.BUCKLED)
     whole = (tmp_path / "a").read_text()
     assert (tmp_path / "b").read_text() == whole
     old = re.sub(r',"digest":"\w+"', "", whole.replace(witness.name, witness.name.lower()))

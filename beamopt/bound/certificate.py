@@ -12,7 +12,7 @@ from beamopt.bound.response import ResponseBound, response_bound
 from beamopt.bound.ring import RingMoments
 from beamopt.bound.ring_bound import RingBound, ring_bound
 from beamopt.bound.wanted import Wanted, wanted_of
-from beamopt.bound.work import MOST_WORK, Progress, Work
+from beamopt.bound.work import MOST_WORK, Progress, WorkLeft
 from beamopt.rod.ladder import Rung
 from beamopt.scene.scene import Scene
 from beamopt.target.target import Target
@@ -111,7 +111,7 @@ def certificate(
     if wanted is None or response is None:
         return quick
     started = time.perf_counter()
-    proof, rounds = Work(most_work / 2, callback), Work(most_work / 2, callback)
+    proof, rounds = WorkLeft(most_work / 2, callback), WorkLeft(most_work / 2, callback)
     proven = ray_bound(wanted, response=response.matrix, work=proof)
     between = time.perf_counter()
     moments = RingMoments.of(scene.grid.build(), scene.seal.rules.skin)

@@ -11,7 +11,7 @@ from beamopt.base.arrays import FloatArray
 from beamopt.bound.cells import Box, RayMinimum
 from beamopt.bound.rays import RayBound, RayParts
 from beamopt.bound.wanted import Wanted
-from beamopt.bound.work import Work
+from beamopt.bound.work import WorkLeft
 
 __all__ = ["FREE_GAP", "GAP", "ray_bound"]
 
@@ -28,7 +28,7 @@ def ray_bound(
     wanted: Wanted,
     box: Box | None = None,
     response: FloatArray | None = None,
-    work: Work | None = None,
+    work: WorkLeft | None = None,
 ) -> RayBound:
     """Bound L(B) from below over all response matrices B whose strains stay in a box.
 
@@ -51,7 +51,7 @@ def ray_bound(
     response : (3, 3) the lowest B known, that the box is widened to hold; None: no prices.
     work : what it may take; when that is spent, the bound is what is proven by then.
     """
-    work = work or Work(math.inf)
+    work = work or WorkLeft(math.inf)
     parts = RayParts.of(wanted, np.zeros((3, 3)) if response is None else response, box or Box())
     enough = NEAR_ENOUGH * wanted.length**2 * float(wanted.weights.sum())
     free_least = parts.least(np.zeros_like(parts.highest), enough, FREE_GAP, work)
@@ -85,7 +85,7 @@ def _sought(
     prices: FloatArray,
     first: RayBound,
     met: list[list[RayMinimum]],
-    work: Work,
+    work: WorkLeft,
 ) -> RayBound:
     """The highest bound of a few rounds of better prices.
 

@@ -10,15 +10,15 @@ import numpy as np
 from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.bound.cells import Box, RayMinimum, RaySum, ray_minimum
 from beamopt.bound.wanted import Wanted
-from beamopt.bound.work import Work
+from beamopt.bound.work import WorkLeft
 
-__all__ = ["Ray", "RayBound", "RayParts", "rays_of"]
+__all__ = ["RayBound", "RayParts", "RayTerm", "rays_of"]
 
 SAME_DIRECTION = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Ray:
+class RayTerm:
     """What one direction of pressures adds to the bound.
 
     direction : (3,) of unit length. rows : how many of the table's lie on it.
@@ -42,7 +42,7 @@ class RayBound:
     """
 
     unmoved: float
-    rays: tuple[Ray, ...]
+    rays: tuple[RayTerm, ...]
     box: Box
     priced: bool
 
@@ -118,7 +118,7 @@ class RayParts:
         prices: FloatArray,
         slack: float,
         share: float = 0.0,
-        work: Work | None = None,
+        work: WorkLeft | None = None,
     ) -> list[RayMinimum]:
         """The least priced sum of every ray, for prices (r, 3).
 
@@ -144,7 +144,7 @@ class RayParts:
         for q, rows, one in zip(self.highest, self.rows, least, strict=True):
             x, y, z = (q / np.linalg.norm(q)).tolist()
             ends = one.lower * scale, one.upper * scale
-            rays.append(Ray((x, y, z), len(rows), *ends, one.cells))
+            rays.append(RayTerm((x, y, z), len(rows), *ends, one.cells))
         return RayBound(self.unmoved, tuple(rays), self.box, priced)
 
 

@@ -11,7 +11,7 @@ from beamopt.base.arrays import FloatArray
 from beamopt.bound.polytope import Cuts, least_squares_within, nearest_point
 from beamopt.bound.ring import NUMBERS, RingMoments, ring_response
 from beamopt.bound.wanted import Wanted
-from beamopt.bound.work import ROUND, Work
+from beamopt.bound.work import ROUND, WorkLeft
 from beamopt.rod.arc import arc_tip_jacobian_by_response
 
 __all__ = ["RingBound", "ring_bound"]
@@ -58,7 +58,7 @@ def ring_bound(
     ring: RingMoments,
     youngs_modulus: float,
     least: float,
-    work: Work | None = None,
+    work: WorkLeft | None = None,
 ) -> RingBound:
     """Minimise L(B(m)) over the moments m ∈ M that chambers in the ring can have.
 
@@ -73,7 +73,7 @@ def ring_bound(
     least : the lowest L over all responses [mm²]. Where chambers reach it, there is nothing to do.
     work : what it may take but for a first round; any round's outer value is a bound.
     """
-    work = work or Work(math.inf)
+    work = work or WorkLeft(math.inf)
     search = _Search(wanted, ring, youngs_modulus, work)
     enough = NEAR_ENOUGH * wanted.length**2 * float(wanted.weights.sum())
     cuts, starts = search.beginning()
@@ -116,7 +116,7 @@ class _Search:
     wanted: Wanted
     ring: RingMoments
     youngs_modulus: float
-    work: Work
+    work: WorkLeft
 
     def support(self, direction: FloatArray) -> tuple[float, FloatArray]:
         """h(d) and its point, see `RingMoments.farthest`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["MOST_WORK", "Progress", "Work"]
+__all__ = ["MOST_WORK", "Progress", "WorkLeft"]
 
 MOST_WORK = 5 * 10**8
 """Tips of arcs that a bound computes at most, unless more is asked for: a minute or two. The
@@ -17,7 +17,7 @@ Progress = Callable[[str, float], None]
 """Gets the part of the work that goes on, and the share of the work allowed that is spent."""
 
 
-class Work:
+class WorkLeft:
     """The rest of the work that is allowed.
 
     most : tips to compute. short : whether anything was cut short for want of it.

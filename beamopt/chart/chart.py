@@ -10,8 +10,8 @@ import numpy as np
 
 from beamopt.base.provenance import provenance, thread_settings
 from beamopt.chart.measure import (
-    Limits,
-    Measured,
+    MeasuredMethod,
+    TimeLimits,
     measure_method,
     measure_rungs,
     reference_of,
@@ -26,7 +26,7 @@ from beamopt.scene.scene import Scene
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 
-__all__ = ["Chart", "run_chart"]
+__all__ = ["RodChart", "run_chart"]
 
 HEADER = "scene,method,resolution,error_mm,seconds,converged,of,status,ended"
 KIND = FolderKind("a chart of rods", "provenance.json", ("{",), goes_on=False)
@@ -35,7 +35,7 @@ BOUNDS = (1e-3, 1e-6)  # mm
 
 
 @dataclass(frozen=True, eq=False)
-class Chart:
+class RodChart:
     """What was measured on a scene.
 
     rows : of every method and resolution. tolerance : the scene's [mm].
@@ -43,11 +43,11 @@ class Chart:
     """
 
     scene: str
-    rows: tuple[Measured, ...]
+    rows: tuple[MeasuredMethod, ...]
     tolerance: float
     uncertainty: float
 
-    def fastest(self, error: float) -> Measured | None:
+    def fastest(self, error: float) -> MeasuredMethod | None:
         """The fastest whose tips are all within `error` [mm]."""
         within = [row for row in self.rows if row.is_whole and row.error <= error]
         return min(within, key=lambda row: row.seconds, default=None)
@@ -75,9 +75,9 @@ def run_chart(
     *,
     seed: int | None = None,
     methods: Sequence[Method] | None = None,
-    limits: Limits | None = None,
-    callback: Callable[[Measured], None] | None = None,
-) -> Chart:
+    limits: TimeLimits | None = None,
+    callback: Callable[[MeasuredMethod], None] | None = None,
+) -> RodChart:
     """Measure the methods on a scene and write table, figure and provenance to `out`.
 
     Parameters
@@ -90,7 +90,7 @@ def run_chart(
     ------
     InputError : `out` holds files, or can not be written; the scene has nothing to solve.
     """
-    load, limits = workload_of(scene, seed), limits or Limits()
+    load, limits = workload_of(scene, seed), limits or TimeLimits()
     chosen = all_methods(parents_on_grid()) if methods is None else methods
     with claimed(out, KIND, resume=False):
         chart = _measured(scene.name, load, chosen, limits, callback)
@@ -102,11 +102,11 @@ def _measured(
     name: str,
     load: Workload,
     methods: Sequence[Method],
-    limits: Limits,
-    callback: Callable[[Measured], None] | None,
-) -> Chart:
+    limits: TimeLimits,
+    callback: Callable[[MeasuredMethod], None] | None,
+) -> RodChart:
     reference = reference_of(load)
-    rows: list[Measured] = []
+    rows: list[MeasuredMethod] = []
     for measured in (
         measure_rungs(load, reference, limits),
         *(measure_method(method, load, reference, limits) for method in methods),
@@ -115,10 +115,10 @@ def _measured(
             rows.append(row)
             if callback is not None:
                 callback(row)
-    return Chart(name, tuple(rows), load.model.tolerance, reference.uncertainty(rows))
+    return RodChart(name, tuple(rows), load.model.tolerance, reference.uncertainty(rows))
 
 
-def _write(chart: Chart, out: Path, seed: int | None) -> None:
+def _write(chart: RodChart, out: Path, seed: int | None) -> None:
     cells = [
         (
             *(chart.scene, row.method, row.resolution, _known(row.error), _known(row.seconds)),
@@ -148,7 +148,7 @@ def _threads() -> str:
     return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 
-def _lines(chart: Chart) -> list[Line]:
+def _lines(chart: RodChart) -> list[Line]:
     names = list(dict.fromkeys(row.method for row in chart.rows))
     return [
         Line(

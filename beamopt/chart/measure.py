@@ -20,14 +20,21 @@ from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.solution import Method, RodSolution
 from beamopt.rod.status import RodStatus
 
-__all__ = ["Limits", "Measured", "Reference", "measure_method", "measure_rungs", "reference_of"]
+__all__ = [
+    "MeasuredMethod",
+    "RodReference",
+    "TimeLimits",
+    "measure_method",
+    "measure_rungs",
+    "reference_of",
+]
 
 FINEST, NEXT = 24, 20
 """Modes of the reference and of the one that it is held against."""
 
 
 @dataclass(frozen=True)
-class Limits:
+class TimeLimits:
     """seconds : a method may take in all. repeats, spent : of a solve, at least, with seconds."""
 
     seconds: float = 20.0
@@ -36,7 +43,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredMethod:
     """One method at one resolution.
 
     error : largest distance of a tip from the reference [mm]; NaN without a tip.
@@ -59,7 +66,7 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class RodReference:
     """solution : the finest. between : largest distance from the next coarser one's tips [mm]."""
 
     solution: RodSolution
@@ -71,7 +78,7 @@ class Reference:
         known = distances[np.isfinite(distances)]
         return float(known.max()) if known.size else np.nan
 
-    def uncertainty(self, rows: Sequence[Measured]) -> float:
+    def uncertainty(self, rows: Sequence[MeasuredMethod]) -> float:
         """Its own largest error [mm]: as far as it is from itself, coarser, and from others.
 
         rows : of which the most exact one that is not in modes counts.
@@ -86,7 +93,7 @@ class Reference:
         return max([self.between, min(others)]) if others else self.between
 
 
-def reference_of(load: Workload) -> Reference:
+def reference_of(load: Workload) -> RodReference:
     """Tips with the most modes.
 
     Raises
@@ -99,20 +106,20 @@ def reference_of(load: Workload) -> Reference:
         status = finest.status[0].value
         raise InputError(load.scene, "", None, f"no equilibrium at any pressure: {status}")
     coarser = method.solve(load.rod, load.rest, NEXT)
-    reference = Reference(finest, np.nan)
-    return Reference(finest, reference.error_of(coarser.tips))
+    reference = RodReference(finest, np.nan)
+    return RodReference(finest, reference.error_of(coarser.tips))
 
 
 def measure_method(
-    method: Method, load: Workload, reference: Reference, limits: Limits
-) -> Iterator[Measured]:
+    method: Method, load: Workload, reference: RodReference, limits: TimeLimits
+) -> Iterator[MeasuredMethod]:
     """A method from coarse to fine, until its time is up."""
     rod, rest, n = load.rod, load.rest, len(load.rest)
     method.solve(rod, rest, method.resolutions[0])  # compiles
     left = limits.seconds
     for resolution in method.resolutions:
         if left <= 0:
-            yield Measured(method.name, resolution, np.nan, np.nan, 0, n, RodStatus.TOO_SLOW)
+            yield MeasuredMethod(method.name, resolution, np.nan, np.nan, 0, n, RodStatus.TOO_SLOW)
             continue
         method = limited(method, left / n)
         started = perf_counter()
@@ -123,10 +130,10 @@ def measure_method(
         wrong = Counter(one for one in found.status if one is not RodStatus.CONVERGED)
         status = wrong.most_common(1)[0][0] if wrong else RodStatus.CONVERGED
         error, count = reference.error_of(found.tips), int(found.converged.sum())
-        yield Measured(method.name, resolution, error, seconds, count, n, status)
+        yield MeasuredMethod(method.name, resolution, error, seconds, count, n, status)
 
 
-def _fastest(solve: Callable[[], object], left: float, limits: Limits) -> tuple[float, float]:
+def _fastest(solve: Callable[[], object], left: float, limits: TimeLimits) -> tuple[float, float]:
     """The fastest of several calls, and how long they took together [s]."""
     times: list[float] = []
     while len(times) < limits.repeats or sum(times) < limits.spent:
@@ -138,7 +145,9 @@ def _fastest(solve: Callable[[], object], left: float, limits: Limits) -> tuple[
     return min(times, default=np.nan), sum(times)
 
 
-def measure_rungs(load: Workload, reference: Reference, limits: Limits) -> Iterator[Measured]:
+def measure_rungs(
+    load: Workload, reference: RodReference, limits: TimeLimits
+) -> Iterator[MeasuredMethod]:
     """The ladder's lower rungs: without loads, the arc also without what varies along the rod."""
     model, section, pressures, n = load.model, load.section, load.pressures, len(load.rest)
     # tips of rungs are material centroids, those of methods the axis
@@ -149,4 +158,4 @@ def measure_rungs(load: Workload, reference: Reference, limits: Limits) -> Itera
         tips = lower.tips(section, pressures).positions
         seconds, _ = _fastest(partial(lower.tips, section, pressures), np.inf, limits)
         error = reference.error_of(tips + solution.tips - centroids)
-        yield Measured(rung.value, None, error, seconds, n, n, RodStatus.CONVERGED)
+        yield MeasuredMethod(rung.value, None, error, seconds, n, n, RodStatus.CONVERGED)

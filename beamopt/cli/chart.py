@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rich.table import Table
 
-from beamopt.chart.chart import Chart, run_chart
-from beamopt.chart.measure import Measured
+from beamopt.chart.chart import RodChart, run_chart
+from beamopt.chart.measure import MeasuredMethod
 from beamopt.cli.progress import console, progress_bar
 from beamopt.comparators.methods import all_methods
 from beamopt.scene.scene import load_scene
@@ -26,14 +26,14 @@ def chart_command(
         total = 2 + sum(len(method.resolutions) for method in all_methods())
         task = bar.add_task(scene.name, total=total, said="starting (compiles once on a machine)")
 
-        def show(row: Measured) -> None:
+        def show(row: MeasuredMethod) -> None:
             bar.update(task, advance=1, said=f"{row.method} {row.resolution or ''}")
 
         chart = run_chart(scene, folder, seed=seed, callback=show)
     _report(chart, folder)
 
 
-def _report(chart: Chart, folder: Path) -> None:
+def _report(chart: RodChart, folder: Path) -> None:
     title = f"{chart.scene}: the fastest of each method that is within {chart.tolerance:g} mm"
     table = Table(title=title)
     for name in ("method", "resolution", "error [mm]", "time [ms]"):

@@ -15,7 +15,7 @@ from beamopt.cli.exit_codes import ExitCode
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.cli.refine import refinement_lines
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import JudgeStatus
 from beamopt.reach.reach import TOLERANCE
 from beamopt.refine.folder import EarlierRefinement
 from beamopt.refine.refine import StageRecord
@@ -74,7 +74,7 @@ def optimize_command(
         asked = shlex.join([scene_name, *(f"--set={key}" for key in [*overrides, *seeded])])
         console.print(f"go on with: beamopt optimize {asked} --out {folder} --resume", markup=False)
         raise KeyboardInterrupt
-    if result.verdict.status is not Status.JUDGED:
+    if result.verdict.status is not JudgeStatus.JUDGED:
         raise typer.Exit(ExitCode.DOES_NOT_HOLD)
 
 
@@ -82,7 +82,7 @@ def _report(result: Optimisation, folder: Path) -> None:
     climb = result.scene.climb
     lines = [("rod", f"{climb.model.rung.value}: {climb.reason}")]
     lines += [("ended", f"{result.status.value}; {result.evaluations} sections judged")]
-    if result.verdict.status is Status.JUDGED:
+    if result.verdict.status is JudgeStatus.JUDGED:
         lines += _found(result)
     else:
         lines.append(("no design", result.verdict.status.value))
@@ -98,7 +98,7 @@ def _report(result: Optimisation, folder: Path) -> None:
     console.print(f"[bold]{result.scene.name}[/], seed {result.scene.search.seed}")
     for name, text in lines:
         console.print(f"  {name:<13}{text}", soft_wrap=True, markup=False)
-    if result.verdict.status is Status.JUDGED:
+    if result.verdict.status is JudgeStatus.JUDGED:
         say_findings(load_design(design_file(folder)))
 
 
@@ -138,7 +138,7 @@ def _total(result: Optimisation) -> list[tuple[str, str]]:
 def _rejected(result: Optimisation) -> list[tuple[str, str]]:
     """How many candidates were not judged, by reason; nothing where all were."""
     counts = result.last.rejected
-    said = "; ".join(f"{counts[one]}: {one.value}" for one in Status if one in counts)
+    said = "; ".join(f"{counts[one]}: {one.value}" for one in JudgeStatus if one in counts)
     return [("not judged", said)] if said else []
 
 

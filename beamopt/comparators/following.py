@@ -15,7 +15,7 @@ from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 
-__all__ = ["Attempt", "Case", "Followed", "follow", "not_representable", "solve_cases"]
+__all__ = ["Attempt", "BoundaryProblem", "Followed", "follow", "not_representable", "solve_cases"]
 
 LEAST_STEP = 1 / 1024
 """Of the loads already carried: shorter steps are given up."""
@@ -34,7 +34,7 @@ class Attempt(Generic[Shape]):
     iterations: int
 
 
-class Case(Protocol[Shape]):
+class BoundaryProblem(Protocol[Shape]):
     """One boundary-value problem, for any share of its loads."""
 
     def unloaded(self) -> Shape:
@@ -64,7 +64,7 @@ class Followed(Generic[Shape]):
 
 
 def follow(
-    case: Case[Shape], guess: Shape | None, seconds: float = inf, step: float = 1.0
+    case: BoundaryProblem[Shape], guess: Shape | None, seconds: float = inf, step: float = 1.0
 ) -> Followed[Shape]:
     """Try all loads at once from `guess`; failing that, let them grow from the rod at rest.
 
@@ -103,7 +103,7 @@ def _given_up(last: RodStatus, factor: float) -> RodStatus:
 
 
 def solve_cases(
-    cases: Sequence[Case[Shape]],
+    cases: Sequence[BoundaryProblem[Shape]],
     stations: FloatArray,
     seconds: float,
     step: float,

@@ -9,7 +9,7 @@ from beamopt.base.arrays import FloatArray, IndexArray
 from beamopt.comparators.collocation import Collocation
 from beamopt.comparators.multiple_shooting import MultipleShooting
 from beamopt.comparators.shooting import Shooting
-from beamopt.comparators.sweep import Stepper
+from beamopt.comparators.sweep import StepRule
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.equilibrium import solve_rod
 from beamopt.rod.modes import StrainModes
@@ -58,9 +58,9 @@ def all_methods(parents: IndexArray | None = None) -> tuple[Method, ...]:
         StrainModes(parents=parents),
         Elements(),
         Shooting(),
-        Shooting(Stepper.MUNTHE_KAAS),
+        Shooting(StepRule.MUNTHE_KAAS),
         MultipleShooting(),
-        MultipleShooting(Stepper.MUNTHE_KAAS),
+        MultipleShooting(StepRule.MUNTHE_KAAS),
         Collocation(),
     )
 

@@ -20,7 +20,7 @@ from beamopt.comparators.sections import Sections, draw, largest_wrench, move, t
 from beamopt.comparators.shooting import HALVINGS, ITERATIONS, stations_of
 from beamopt.comparators.sweep import (
     WORK,
-    Stepper,
+    StepRule,
     advance,
     between,
     leftover,
@@ -52,7 +52,7 @@ class MultipleShooting:
     seconds : of processor time that a case may take; the very first call compiles, and that counts.
     """
 
-    stepper: Stepper = Stepper.RUNGE_KUTTA
+    stepper: StepRule = StepRule.RUNGE_KUTTA
     intervals: int = 16
     first_step: float = 1.0
     seconds: float = inf
@@ -61,7 +61,7 @@ class MultipleShooting:
     @property
     def name(self) -> str:
         """One word for tables and figures."""
-        runge_kutta = self.stepper is Stepper.RUNGE_KUTTA
+        runge_kutta = self.stepper is StepRule.RUNGE_KUTTA
         return "multiple-shooting" if runge_kutta else "multiple-shooting-magnus"
 
     def solve(self, rod: Rod, rest: FloatArray, resolution: int) -> RodSolution:
@@ -79,7 +79,7 @@ class MultipleShooting:
 class _Case:
     """One case; its shape is that of the sections between intervals."""
 
-    def __init__(self, rod: Rod, model: Loaded, stepper: Stepper, intervals: int) -> None:
+    def __init__(self, rod: Rod, model: Loaded, stepper: StepRule, intervals: int) -> None:
         self.rod = rod
         self.model = model
         self.stepper = int(stepper)

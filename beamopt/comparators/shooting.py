@@ -17,7 +17,7 @@ from beamopt.comparators.growing import under
 from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
 from beamopt.comparators.sweep import (
     WORK,
-    Stepper,
+    StepRule,
     advance,
     drawn,
     leftover,
@@ -50,7 +50,7 @@ class Shooting:
     seconds : of processor time that a case may take; the very first call compiles, and that counts.
     """
 
-    stepper: Stepper = Stepper.RUNGE_KUTTA
+    stepper: StepRule = StepRule.RUNGE_KUTTA
     first_step: float = 1.0
     seconds: float = inf
     resolutions: Sequence[int] = field(default=(4, 8, 16, 32, 64, 128, 256, 512, 1024))
@@ -58,7 +58,7 @@ class Shooting:
     @property
     def name(self) -> str:
         """One word for tables and figures."""
-        return "shooting" if self.stepper is Stepper.RUNGE_KUTTA else "shooting-magnus"
+        return "shooting" if self.stepper is StepRule.RUNGE_KUTTA else "shooting-magnus"
 
     def solve(self, rod: Rod, rest: FloatArray, resolution: int) -> RodSolution:
         """Solve for the rest strains (n, segments, 6) of n cases, with `resolution` steps."""
@@ -80,7 +80,7 @@ def stations_of(rod: Rod, model: Loaded) -> FloatArray:
 class _Case:
     """One case; its shape is force and moment (6,) at the base."""
 
-    def __init__(self, rod: Rod, model: Loaded, stepper: Stepper) -> None:
+    def __init__(self, rod: Rod, model: Loaded, stepper: StepRule) -> None:
         self.rod = rod
         self.model = model
         self.stepper = int(stepper)

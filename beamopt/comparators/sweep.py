@@ -18,7 +18,7 @@ from beamopt.comparators.se3 import rotation_vector
 
 __all__ = [
     "WORK",
-    "Stepper",
+    "StepRule",
     "advance",
     "between",
     "drawn",
@@ -32,7 +32,7 @@ WORK = 81
 """Rows of the space that steps work in."""
 
 
-class Stepper(IntEnum):
+class StepRule(IntEnum):
     """How to go one step along the rod; both are of order four."""
 
     RUNGE_KUTTA = 0

@@ -10,7 +10,7 @@ from beamopt.export.faces import Contour, Face, SectionFaces
 from beamopt.outline.ring import circle
 from beamopt.section.grid import PolarGrid
 
-__all__ = ["BASE_MARGIN", "BASE_THICKNESS", "Solid", "body_solids", "mould_solids"]
+__all__ = ["BASE_MARGIN", "BASE_THICKNESS", "ExtrudedFace", "body_solids", "mould_solids"]
 
 BASE_THICKNESS = 5.0
 """mm, of the plate that the cores stand on."""
@@ -20,7 +20,7 @@ BASE_MARGIN = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solid:
+class ExtrudedFace:
     """A plane face extruded along z, less closed cavities within it.
 
     low, high : where it begins and ends [mm]; z = 0 is the actuator's base.
@@ -31,7 +31,7 @@ class Solid:
     contours: tuple[Contour, ...]
     low: float
     high: float
-    cavities: tuple[Solid, ...] = ()
+    cavities: tuple[ExtrudedFace, ...] = ()
 
     @property
     def volume(self) -> float:
@@ -46,7 +46,7 @@ class Solid:
         return area * (self.high - self.low) - sum(one.polygon_volume for one in self.cavities)
 
 
-def body_solids(faces: SectionFaces, length: float, cap: float = 0.0) -> tuple[Solid, ...]:
+def body_solids(faces: SectionFaces, length: float, cap: float = 0.0) -> tuple[ExtrudedFace, ...]:
     """What is cast: every connected piece of material from z = 0 to `length`.
 
     cap : thickness of a plate of the same material at each end [mm], which closes the chambers and
@@ -59,12 +59,12 @@ def body_solids(faces: SectionFaces, length: float, cap: float = 0.0) -> tuple[S
     InputError : caps were asked for, but the chambers are open to a surface or to each other.
     """
     if cap == 0:
-        return tuple(Solid(face.name, face.contours, 0.0, length) for face in faces.pieces)
+        return tuple(ExtrudedFace(face.name, face.contours, 0.0, length) for face in faces.pieces)
     if faces.is_open:
         said = "must be 0: chambers are open, end plates would not close them"
         raise InputError("--cap", "", f"{cap:g}", said)
     cavities = _extruded(faces.chambers, length)
-    return (Solid("body", faces.ring, -cap, length + cap, cavities),)
+    return (ExtrudedFace("body", faces.ring, -cap, length + cap, cavities),)
 
 
 def mould_solids(
@@ -73,7 +73,7 @@ def mould_solids(
     length: float,
     sagitta: float,
     base_thickness: float = BASE_THICKNESS,
-) -> tuple[Solid, ...]:
+) -> tuple[ExtrudedFace, ...]:
     """What keeps the chambers free while the body is cast: cores on a round plate.
 
     One core a chamber from z = 0 to `length`, with a hole where an island of material is; for a
@@ -83,14 +83,14 @@ def mould_solids(
     """
     cores = _extruded(faces.chambers, length)
     if grid.is_full_ring and grid.inner_radius > 0:
-        cores += (Solid("core-hole", (_hole(faces, grid, sagitta),), 0.0, length),)
+        cores += (ExtrudedFace("core-hole", (_hole(faces, grid, sagitta),), 0.0, length),)
     radius = grid.outer_radius + BASE_MARGIN
     rim = Contour(circle(radius, sagitta), radius, True)
-    return (*cores, Solid("base-plate", (rim,), -base_thickness, 0.0))
+    return (*cores, ExtrudedFace("base-plate", (rim,), -base_thickness, 0.0))
 
 
-def _extruded(chambers: Sequence[Face], length: float) -> tuple[Solid, ...]:
-    return tuple(Solid(face.name, face.contours, 0.0, length) for face in chambers)
+def _extruded(chambers: Sequence[Face], length: float) -> tuple[ExtrudedFace, ...]:
+    return tuple(ExtrudedFace(face.name, face.contours, 0.0, length) for face in chambers)
 
 
 def _hole(faces: SectionFaces, grid: PolarGrid, sagitta: float) -> Contour:

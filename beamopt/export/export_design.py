@@ -8,7 +8,7 @@ from pathlib import Path
 
 from beamopt.base.errors import InputError
 from beamopt.base.provenance import provenance
-from beamopt.export.bodies import BASE_THICKNESS, Solid, body_solids, mould_solids
+from beamopt.export.bodies import BASE_THICKNESS, ExtrudedFace, body_solids, mould_solids
 from beamopt.export.drawing import Drawing, section_drawing
 from beamopt.export.dxf import NEEDS_EZDXF, dxf_bytes, require_ezdxf
 from beamopt.export.faces import section_faces
@@ -174,8 +174,8 @@ def _check_owner(folder: Path, name: str) -> None:
 
 def _contents(
     drawing: Drawing,
-    body: tuple[Solid, ...],
-    mould: tuple[Solid, ...],
+    body: tuple[ExtrudedFace, ...],
+    mould: tuple[ExtrudedFace, ...],
     formats: tuple[str, ...],
     *,
     all_or_none: bool,

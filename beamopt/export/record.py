@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from beamopt.export.bodies import Solid
+from beamopt.export.bodies import ExtrudedFace
 from beamopt.export.drawing import Drawing, is_thinner
 from beamopt.export.faces import SectionFaces
 from beamopt.outline.faults import Fault, summaries
@@ -20,7 +20,7 @@ def export_record(
     name: str,
     design: Design,
     drawing: Drawing,
-    solids: Mapping[str, Sequence[Solid]],
+    solids: Mapping[str, Sequence[ExtrudedFace]],
     files: Mapping[str, bytes],
     *,
     sagitta: float,
@@ -93,7 +93,7 @@ def _areas(faces: SectionFaces) -> dict[str, object]:
     }
 
 
-def _measures(solid: Solid) -> dict[str, object]:
+def _measures(solid: ExtrudedFace) -> dict[str, object]:
     return {
         "name": solid.name,
         "low_mm": solid.low,

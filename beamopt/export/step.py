@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from beamopt.base.errors import InputError
-from beamopt.export.bodies import Solid
+from beamopt.export.bodies import ExtrudedFace
 from beamopt.export.faces import Contour
 from beamopt.storage.scratch import scratch_folder
 
@@ -45,7 +45,7 @@ def is_installed(package: str) -> bool:
         return False
 
 
-def step_text(solids: Sequence[Solid], title: str, seconds: float = SECONDS) -> str:
+def step_text(solids: Sequence[ExtrudedFace], title: str, seconds: float = SECONDS) -> str:
     """A STEP file (AP214, mm) of solids named as they are, the same bytes for the same solids.
 
     The kernel runs in a process of its own: it prints, and it may hang or crash. What it built is
@@ -67,7 +67,7 @@ def step_text(solids: Sequence[Solid], title: str, seconds: float = SECONDS) -> 
     return _named(text, [solid.name for solid in solids], title)
 
 
-def _plain(solid: Solid) -> dict[str, Any]:
+def _plain(solid: ExtrudedFace) -> dict[str, Any]:
     return {
         "low": solid.low,
         "high": solid.high,

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
-from beamopt.export.bodies import Solid
+from beamopt.export.bodies import ExtrudedFace
 from beamopt.export.faces import Contour, polygon_of
 
 __all__ = ["enclosed_volume", "is_watertight", "solid_triangles", "stl_bytes"]
@@ -19,7 +19,7 @@ RECORD = np.dtype(
 """What the format holds of a triangle, in 50 bytes."""
 
 
-def stl_bytes(solids: Sequence[Solid]) -> bytes:
+def stl_bytes(solids: Sequence[ExtrudedFace]) -> bytes:
     """A binary STL file of all solids, each a closed surface of its own; mm.
 
     Raises
@@ -37,7 +37,7 @@ def stl_bytes(solids: Sequence[Solid]) -> bytes:
     return header[:80].ljust(80) + np.uint32(len(corners)).tobytes() + records.tobytes()
 
 
-def solid_triangles(solid: Solid) -> FloatArray:
+def solid_triangles(solid: ExtrudedFace) -> FloatArray:
     """(n, 3, 3) corners [mm] of a solid's surface, counter-clockwise seen from outside.
 
     The corners are rounded to the single precision that the file holds.
@@ -70,7 +70,7 @@ def enclosed_volume(triangles: FloatArray) -> float:
     return float(np.sum(a * np.cross(b, c)) / 6)
 
 
-def _shell(solid: Solid) -> FloatArray:
+def _shell(solid: ExtrudedFace) -> FloatArray:
     """A face between two heights: both ends, and two triangles for every edge."""
     plane = _triangulated(solid.contours)
     ends = [_raised(plane, solid.high), _raised(plane, solid.low)[:, ::-1]]

@@ -13,7 +13,7 @@ from beamopt.rod.ladder import RodModel, SectionValues
 from beamopt.section.moments import Moments
 from beamopt.target.aim import Aim
 
-__all__ = ["Answers", "Question"]
+__all__ = ["Answers", "SectionQuestion"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Answers:
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class SectionQuestion:
     """What is asked of sections.
 
     rod : the actuator but for its section. aim : what its tip should do. low, high : of the

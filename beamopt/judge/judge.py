@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.base.arrays import FloatArray, IndexArray
-from beamopt.judge.answers import Answers, Question
+from beamopt.judge.answers import Answers, SectionQuestion
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.scene.scene import Scene
@@ -29,18 +29,18 @@ from beamopt.target.aim import Aim
 from beamopt.target.target import Target
 from beamopt.target.workspace import pressure_grid
 
-__all__ = ["Judge", "Status", "Verdict", "in_parts", "judge_all"]
+__all__ = ["Judge", "JudgeStatus", "Verdict", "in_parts", "judge_all"]
 
 Found = TypeVar("Found")
 
 
-class Status(Enum):
+class JudgeStatus(Enum):
     """How judging a candidate ended; the value is the text shown to people.
 
     Examples
     --------
     >>> import beamopt
-    >>> beamopt.Status.NO_MATERIAL.value
+    >>> beamopt.JudgeStatus.NO_MATERIAL.value
     'the section has no material'
     """
 
@@ -69,7 +69,7 @@ class Verdict:
 
     L: float
     K: float
-    status: Status = Status.JUDGED
+    status: JudgeStatus = JudgeStatus.JUDGED
     R: float = 0.0
 
     def __repr__(self) -> str:
@@ -166,7 +166,7 @@ class Judge:
         statuses = [_status(*row) for row in rows]
         return [
             Verdict(float(L), float(K), status, float(R))
-            if status is Status.JUDGED
+            if status is JudgeStatus.JUDGED
             else _failed(status)
             for L, K, R, status in zip(first, second, third, statuses, strict=True)
         ]
@@ -197,10 +197,10 @@ class Judge:
         return self.aim.settled(self.question.reach(values).pressures)
 
     @cached_property
-    def question(self) -> Question:
+    def question(self) -> SectionQuestion:
         """What is asked of every section."""
         low, _, high = self.levels
-        return Question(self.rod, self.aim, low, high, self._parents)
+        return SectionQuestion(self.rod, self.aim, low, high, self._parents)
 
     def _answers(self, measured: Phenotypes) -> tuple[Answers, NDArray[np.bool_]]:
         """Answers (n, …) of every candidate, and (n,) whether all of a candidate's are there."""
@@ -230,19 +230,21 @@ class Judge:
         return SectionValues(moments, section_saint_venant(self.grid, labels, nu))
 
 
-def _status(points: int, area: float, is_stiff: bool, rejected: bool, has_tips: bool) -> Status:
+def _status(
+    points: int, area: float, is_stiff: bool, rejected: bool, has_tips: bool
+) -> JudgeStatus:
     if points == 0:
-        return Status.NO_FEATURE_POINTS
+        return JudgeStatus.NO_FEATURE_POINTS
     if area == 0:
-        return Status.NO_MATERIAL
+        return JudgeStatus.NO_MATERIAL
     if not is_stiff:
-        return Status.NOT_STIFF
+        return JudgeStatus.NOT_STIFF
     if rejected:
-        return Status.TOO_MANY_CHAMBERS
-    return Status.JUDGED if has_tips else Status.NO_EQUILIBRIUM
+        return JudgeStatus.TOO_MANY_CHAMBERS
+    return JudgeStatus.JUDGED if has_tips else JudgeStatus.NO_EQUILIBRIUM
 
 
-def _failed(status: Status) -> Verdict:
+def _failed(status: JudgeStatus) -> Verdict:
     return Verdict(np.inf, np.inf, status)
 
 

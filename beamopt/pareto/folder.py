@@ -8,7 +8,7 @@ from pathlib import Path
 
 from beamopt.base.provenance import provenance
 from beamopt.bound.folder import bound_summary
-from beamopt.judge.judge import Judge, Status
+from beamopt.judge.judge import Judge, JudgeStatus
 from beamopt.pareto.front import Front, design_name, designs_of, front_csv
 from beamopt.pareto.scores import BEST, OBJECTIVES
 from beamopt.scene.design import Design
@@ -84,7 +84,7 @@ def _history_csv(front: Front) -> str:
 
 def _summary(front: Front) -> dict[str, object]:
     """How it ended and what it found, without times."""
-    rejected = {one.name: front.rejected[one] for one in Status if one in front.rejected}
+    rejected = {one.name: front.rejected[one] for one in JudgeStatus if one in front.rejected}
     return {
         "status": front.status.value,
         "ended": front.status.name,

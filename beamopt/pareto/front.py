@@ -12,7 +12,7 @@ import numpy as np
 from beamopt.base.arrays import FloatArray
 from beamopt.base.brief import Brief
 from beamopt.bound.certificate import Certificate
-from beamopt.judge.judge import Judge, Status
+from beamopt.judge.judge import Judge, JudgeStatus
 from beamopt.pareto.search import Candidate, FrontNumbers, front_values
 from beamopt.plot.pareto import spans_decades
 from beamopt.scene.design import Design
@@ -59,7 +59,7 @@ class Front:
     designs: tuple[Candidate, ...]
     history: tuple[FrontNumbers, ...]
     seen: FloatArray
-    rejected: Mapping[Status, int]
+    rejected: Mapping[JudgeStatus, int]
     timing: Timing
     bound: Certificate
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from beamopt.base.errors import InputError
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import JudgeStatus, Verdict
 from beamopt.pareto.scores import Score
 from beamopt.pareto.search import FrontSearch
 from beamopt.scene.scene import Scene
@@ -100,9 +100,13 @@ def _score(written: object, points: FeaturePoints) -> Score | None:
     """A score as `_entry` writes it; None for anything else."""
     match written:
         case [digest, str(name), int(many)] if digest == points.digest:
-            if name not in Status.__members__ or Status[name] is Status.JUDGED or many < 0:
+            if (
+                name not in JudgeStatus.__members__
+                or JudgeStatus[name] is JudgeStatus.JUDGED
+                or many < 0
+            ):
                 return None
-            failed = Verdict(math.inf, math.inf, Status[name])
+            failed = Verdict(math.inf, math.inf, JudgeStatus[name])
             return Score(failed, math.inf, math.inf, (0, 0, 0), many)
         case [digest, *numbers, [int(a), int(b), int(c)]] if digest == points.digest:
             losses = [one for one in numbers if isinstance(one, float) and 0 <= one < math.inf]

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.section.feature_points import FeaturePoints
 
 __all__ = ["BEST", "OBJECTIVES", "Score", "chosen_objectives", "nondominated", "scored"]
@@ -50,14 +50,14 @@ class Score:
     @property
     def judged(self) -> bool:
         """Whether it can be on a front."""
-        return self.verdict.status is Status.JUDGED
+        return self.verdict.status is JudgeStatus.JUDGED
 
     @property
     def excess(self) -> float:
         """How far it is from being judged: chambers too many; 0 for one that is."""
         if self.judged:
             return 0.0
-        few = self.verdict.status is Status.TOO_MANY_CHAMBERS
+        few = self.verdict.status is JudgeStatus.TOO_MANY_CHAMBERS
         return float(self.too_many) if few else WORST
 
     def values(self, objectives: Sequence[str]) -> tuple[float, ...]:

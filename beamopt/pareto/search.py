@@ -12,7 +12,7 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.random_streams import Purpose, stream
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import JudgeStatus
 from beamopt.pareto.scores import Score, nondominated
 from beamopt.scene.scene import Scene
 from beamopt.search.variation import Variation
@@ -77,7 +77,7 @@ class FrontSearch:
         self._size = population
         self._algorithm, self._problem = _nsga2(self, len(objectives))
         self.generation = self.evaluations = 0
-        self.rejected: Counter[Status] = Counter()
+        self.rejected: Counter[JudgeStatus] = Counter()
         self.front: tuple[Candidate, ...] = ()
         self._seen = array("d")
         self._ask()

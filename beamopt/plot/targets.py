@@ -6,7 +6,7 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import NoEquilibriumError
-from beamopt.plot.workspace import Dots, Followed
+from beamopt.plot.workspace import Dots, FollowedTrajectories
 from beamopt.reach.reach import reach
 from beamopt.scene.design import Design
 from beamopt.target.aim import Aim
@@ -49,12 +49,12 @@ def _counted(aim: Aim, directions: FloatArray) -> FloatArray:
     return np.where((aim.direction_weights > 0)[:, None], directions, np.nan)
 
 
-def following(design: Design | None, target: Target | None) -> Followed | None:
+def following(design: Design | None, target: Target | None) -> FollowedTrajectories | None:
     """The target's trajectories, and what the design reaches of them."""
     if target is None or not target.paths:
         return None
     if design is None:
-        return Followed(target.paths)
+        return FollowedTrajectories(target.paths)
     low, _, high = design.pressures
     model, points = design.climb.model, target.aim.paths
-    return Followed(target.paths, reach(model, design.values, points, low, high).tips)
+    return FollowedTrajectories(target.paths, reach(model, design.values, points, low, high).tips)

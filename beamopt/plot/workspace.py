@@ -18,7 +18,14 @@ from beamopt.target.workspace import Workspace
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Dots", "Followed", "draw_diagonal", "draw_down", "draw_from_above", "pressure_handles"]
+__all__ = [
+    "Dots",
+    "FollowedTrajectories",
+    "draw_diagonal",
+    "draw_down",
+    "draw_from_above",
+    "pressure_handles",
+]
 
 TANGENT = 8.0  # mm, of the line that shows where a tip points
 
@@ -40,7 +47,7 @@ class Dots:
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
+class FollowedTrajectories:
     """Trajectories, each (k, 3) [mm], and the tips (m, 3) that come nearest to all their points."""
 
     paths: Sequence[FloatArray]
@@ -52,7 +59,7 @@ def draw_from_above(
     workspace: Workspace | Dots | None,
     target: Workspace | Dots | None = None,
     backbones: FloatArray | None = None,
-    followed: Followed | None = None,
+    followed: FollowedTrajectories | None = None,
 ) -> None:
     """Draw the workspace seen along the actuator, x to the right and y up [mm]."""
     _draw(axes, (0, 1), workspace, target, backbones)
@@ -67,7 +74,7 @@ def draw_diagonal(
     workspace: Workspace | Dots | None,
     target: Workspace | Dots | None = None,
     backbones: FloatArray | None = None,
-    followed: Followed | None = None,
+    followed: FollowedTrajectories | None = None,
 ) -> None:
     """Draw the workspace seen diagonally, on three-dimensional axes [mm]."""
     _draw(axes, (0, 1, 2), workspace, target, backbones)
@@ -144,7 +151,7 @@ def _draw_directions(axes: Any, dims: tuple[int, ...], dots: Dots, colour: str) 
         axes.plot(*line.T, color=colour, lw=1.6)
 
 
-def _draw_followed(axes: Any, dims: tuple[int, ...], followed: Followed) -> None:
+def _draw_followed(axes: Any, dims: tuple[int, ...], followed: FollowedTrajectories) -> None:
     for k, path in enumerate(followed.paths):
         label = {"label": "trajectory"} if k == 0 else {}
         axes.plot(*path[:, dims].T, color=TARGET_COLOUR, ls=(0, (4, 2)), lw=1.4, **label)

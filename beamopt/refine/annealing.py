@@ -25,13 +25,13 @@ from beamopt.refine.truth import Judged, Truth
 from beamopt.rod.response import linear_response
 from beamopt.section.neighbours import cell_neighbours, neighbours_of
 
-__all__ = ["Schedule", "anneal"]
+__all__ = ["Cooling", "anneal"]
 
 AT_ONCE = 100_000  # flips whose random numbers are drawn together
 
 
 @dataclass(frozen=True, slots=True)
-class Schedule:
+class Cooling:
     """How an annealing cools.
 
     flips : proposed in all. walks : chains that they are cut into, each judged at its end.
@@ -58,7 +58,7 @@ def anneal(
     truth: Truth,
     start: Judged,
     orbits: Orbits,
-    schedule: Schedule,
+    schedule: Cooling,
     rng: np.random.Generator,
 ) -> tuple[Judged, int]:
     """The section with the lowest T of those that were accepted, and how many were judged.

@@ -11,7 +11,7 @@ from typing import Any
 
 from beamopt.base.provenance import provenance
 from beamopt.judge.answer_tables import paths_csv, tips_table_csv
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.refine.refine_design import Refinement
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import Scene
@@ -61,7 +61,7 @@ def write_refinement(
     """Write what was found to a folder that is there; each file whole or not at all."""
     found.design.save(folder / "refined.json")
     write_atomic(folder / "refinement.csv", stages_csv(found))
-    if found.refined.after.status is not Status.JUDGED:
+    if found.refined.after.status is not JudgeStatus.JUDGED:
         return
     question = Judge.of_scene(scene, target).question
     if len(target.aim):
@@ -129,7 +129,7 @@ def stages_csv(found: Refinement) -> str:
     rows = [
         (one.stage.value, one.round, one.evaluations, one.verdict.L, one.verdict.K, one.verdict.R)
         for one in found.refined.stages
-        if one.verdict.status is Status.JUDGED
+        if one.verdict.status is JudgeStatus.JUDGED
     ]
     return csv_text("stage,round,evaluations,L,K,R", rows)
 
@@ -149,7 +149,7 @@ def refinement_numbers(found: Refinement, scene: Scene) -> dict[str, Any]:
 
 
 def _losses(verdict: Verdict, ratio: float, rules: bool) -> dict[str, Any]:
-    if verdict.status is not Status.JUDGED:
+    if verdict.status is not JudgeStatus.JUDGED:
         return {"status": verdict.status.value, "ended": verdict.status.name}
     ruled = {"R": verdict.R} if rules else {}
     return {"L": verdict.L, "K": verdict.K, **ruled, "T": verdict.T, "neighbour_ratio": ratio}

@@ -13,7 +13,7 @@ from beamopt.refine.orbits import Orbits
 from beamopt.refine.sensitivity import moment_sizes, residual_of, residual_slopes
 from beamopt.refine.truth import Judged, Truth
 
-__all__ = ["Limits", "Linearised", "descend", "linearised"]
+__all__ = ["DescentLimits", "Linearised", "descend", "linearised"]
 
 DAMPING, TRIES, HARDER, EASIER = 1e-4, 5, 8.0, 5.0
 SHAKES, SHAKE = 8, 0.5  # tries with other positions of the same moments; of a row's height
@@ -23,7 +23,7 @@ SETTLED = 1e-3  # a loss this share above the linear model's least is as good as
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class DescentLimits:
     """How far a descent may go.
 
     evaluations : most sections judged. second : most K [mm²] that may be given in exchange for L.
@@ -89,7 +89,7 @@ def descend(
     truth: Truth,
     start: Judged,
     orbits: Orbits,
-    limits: Limits,
+    limits: DescentLimits,
     rng: np.random.Generator,
 ) -> tuple[Judged, int, bool]:
     """Move points until the loss falls no more.
@@ -137,7 +137,7 @@ def descend(
     return best, judged, _settled(judge, best, orbits, limits)
 
 
-def _settled(judge: Judge, best: Judged, orbits: Orbits, limits: Limits) -> bool:
+def _settled(judge: Judge, best: Judged, orbits: Orbits, limits: DescentLimits) -> bool:
     if best.loss <= limits.good_enough:
         return True
     least = linearised(judge, best, orbits).least() + best.verdict.R

@@ -8,8 +8,8 @@ from enum import Enum
 
 from beamopt.base.random_streams import Purpose, stream
 from beamopt.judge.judge import Judge, Verdict
-from beamopt.refine.annealing import Schedule, anneal
-from beamopt.refine.gauss_newton import Limits, descend
+from beamopt.refine.annealing import Cooling, anneal
+from beamopt.refine.gauss_newton import DescentLimits, descend
 from beamopt.refine.orbits import orbits_of, with_cells
 from beamopt.refine.truth import Judged, Truth, View, judged_on
 from beamopt.scene.search_keys import Refining
@@ -17,7 +17,15 @@ from beamopt.section.cell_owners import distinct
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import Symmetry
 
-__all__ = ["RefineStatus", "Refined", "Stage", "StageRecord", "improved", "refine", "rounds_of"]
+__all__ = [
+    "RefineStage",
+    "RefineStatus",
+    "Refined",
+    "StageRecord",
+    "improved",
+    "refine",
+    "rounds_of",
+]
 
 ROUNDS, SEALED_ROUNDS = 6, 16
 OTHER_ENDS = 3  # ends of rounds that outlines are sought of, besides the best one's
@@ -35,7 +43,7 @@ class RefineStatus(Enum):
     NOT_JUDGED = "the section to refine can not be judged"
 
 
-class Stage(Enum):
+class RefineStage(Enum):
     """What a refinement does; the value stands in its table."""
 
     START = "start"
@@ -52,7 +60,7 @@ class StageRecord:
     in, which need not be the best.
     """
 
-    stage: Stage
+    stage: RefineStage
     round: int
     evaluations: int
     verdict: Verdict
@@ -115,7 +123,7 @@ def refine(
     start = points if symmetry is None else with_cells(points, symmetry)
     before = counts(start)
     if not before.found:
-        nothing = (StageRecord(Stage.START, 0, 1, before.verdict),)
+        nothing = (StageRecord(RefineStage.START, 0, 1, before.verdict),)
         unjudged = replace(before, points=points)
         return _refined(RefineStatus.NOT_JUDGED, unjudged, unjudged, nothing, 0)
     work = _Work(judge, settings, seed, symmetry, callback)
@@ -206,11 +214,11 @@ class _Work:
         """The best of all rounds on the raster, K no higher than at first."""
         settings, judge = self.settings, self.judge
         truth = judged_on(judge, View.RASTER)
-        schedule = Schedule(
+        schedule = Cooling(
             settings.flips, settings.walks, settings.hot, min(settings.cold, settings.hot)
         )
         start = truth(with_cells(points, self.symmetry))
-        self._told(Stage.START, 0, start, 1)
+        self._told(RefineStage.START, 0, start, 1)
         if not start.found:
             return start
         enough = settings.ratio_enough * start.verdict.K
@@ -221,11 +229,11 @@ class _Work:
             orbits = orbits_of(len(here.points), self.symmetry)
             annealed, judged = anneal(judge, truth, here, orbits, schedule, rng)
             self.flips += schedule.flips
-            self._told(Stage.ANNEALING, number, annealed, judged)
+            self._told(RefineStage.ANNEALING, number, annealed, judged)
             most = best.verdict.K if is_settled else start.verdict.K
-            limits = Limits(settings.steps, most, settings.good_enough)
+            limits = DescentLimits(settings.steps, most, settings.good_enough)
             moved, judged, settled = descend(judge, truth, annealed, orbits, limits, rng)
-            self._told(Stage.DESCENT, number, moved, judged)
+            self._told(RefineStage.DESCENT, number, moved, judged)
             if moved.verdict.K <= start.verdict.K:
                 self.ends.append(moved)
                 if _is_better(moved, settled, best, is_settled):
@@ -258,12 +266,14 @@ class _Work:
         start = truth(best.points)
         if not start.found:
             return before
-        limits = Limits(self.settings.outline_steps, before.verdict.K, self.settings.good_enough)
+        limits = DescentLimits(
+            self.settings.outline_steps, before.verdict.K, self.settings.good_enough
+        )
         moved, judged, _ = descend(self.judge, truth, start, orbits, limits, rng)
-        self._told(Stage.OUTLINE, 0, moved, judged + 1)
+        self._told(RefineStage.OUTLINE, 0, moved, judged + 1)
         return moved
 
-    def _told(self, stage: Stage, number: int, judged: Judged, evaluations: int) -> None:
+    def _told(self, stage: RefineStage, number: int, judged: Judged, evaluations: int) -> None:
         self.evaluations += evaluations
         record = StageRecord(stage, number, self.evaluations, judged.verdict)
         self.stages.append(record)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from beamopt.judge.answers import Answers
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import SectionValues
 from beamopt.section.feature_points import SUPPLIES, FeaturePoints
@@ -44,7 +44,7 @@ class Judged:
     @property
     def found(self) -> bool:
         """Whether it could be judged."""
-        return self.verdict.status is Status.JUDGED
+        return self.verdict.status is JudgeStatus.JUDGED
 
     @property
     def loss(self) -> float:
@@ -95,7 +95,7 @@ def judged_on(judge: Judge, view: View) -> Truth:
 def _judged(judge: Judge, points: FeaturePoints, measured: Phenotypes) -> Judged:
     verdict = judge.verdicts(measured, [len(points)])[0]
     ratio = float(measured.neighbour_ratio[0])
-    if verdict.status is not Status.JUDGED:
+    if verdict.status is not JudgeStatus.JUDGED:
         unknown = SectionValues(Moments(np.zeros((4, 6))))
         return Judged(points, verdict, unknown, judge, ratio)
     return Judged(points, verdict, judge.values(measured, 0), judge, ratio)

@@ -21,7 +21,7 @@ from beamopt.rod.status import RodStatus
 from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant
 
-__all__ = ["Loads", "Piece", "RodModel", "Rung", "SectionValues", "Tips"]
+__all__ = ["Loads", "RodModel", "RodPiece", "Rung", "SectionValues", "Tips"]
 
 DRAWN, DRAWN_MODES = 41, 12  # points of a backbone; modes of a loaded one
 
@@ -52,7 +52,7 @@ class SectionValues:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class RodPiece:
     """A piece of the actuator.
 
     share : of its length. turned : angle [rad] of its section about the axis. section : None for
@@ -120,7 +120,7 @@ class RodModel:
     youngs_modulus: float
     shear_modulus: float
     response_of: Callable[[Moments], Response]
-    pieces: tuple[Piece, ...] = (Piece(1.0),)
+    pieces: tuple[RodPiece, ...] = (RodPiece(1.0),)
     loads: Loads = field(default_factory=Loads)
     curvature: FloatArray = field(default_factory=lambda: np.zeros(3))
     rung: Rung = Rung.ARC

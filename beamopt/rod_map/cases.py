@@ -15,7 +15,7 @@ from beamopt.rod.ladder import Loads, RodModel, SectionValues
 from beamopt.rod.rod import LineLoad, PointLoad, Rod
 from beamopt.scene.scene import Scene, load_scene
 
-__all__ = ["SLENDERNESSES", "Case", "Kind", "LoadedSection", "case_of", "sizes_of"]
+__all__ = ["SLENDERNESSES", "CaseKind", "LoadedSection", "RodCase", "case_of", "sizes_of"]
 
 SCENE = "random-section"  # whose rules make the sections
 SIZES = 13
@@ -26,7 +26,7 @@ CROOKED = 0.01  # rad: angle of an axially loaded rod's rest shape
 LIGHT = 0.1  # weight L³/EI of a rod under pressure
 
 
-class Kind(Enum):
+class CaseKind(Enum):
     """What loads a rod; the value is the text shown to people."""
 
     WEIGHT = "weight"
@@ -39,38 +39,38 @@ class Kind(Enum):
     def text(self) -> str:
         """What it is, and what its size is."""
         return {
-            Kind.WEIGHT: "weight in any direction, w L³/EI",
-            Kind.TRANSVERSE: "dead force across the tip, F L²/EI",
-            Kind.AXIAL: "dead force on the tip of a crooked column, F L²/EI",
-            Kind.FOLLOWER: "follower force across the tip, F L²/EI",
-            Kind.PRESSURE: "pressure, and a little weight: angle of the rest shape [rad]",
+            CaseKind.WEIGHT: "weight in any direction, w L³/EI",
+            CaseKind.TRANSVERSE: "dead force across the tip, F L²/EI",
+            CaseKind.AXIAL: "dead force on the tip of a crooked column, F L²/EI",
+            CaseKind.FOLLOWER: "follower force across the tip, F L²/EI",
+            CaseKind.PRESSURE: "pressure, and a little weight: angle of the rest shape [rad]",
         }[self]
 
 
-def sizes_of(kind: Kind) -> tuple[float, ...]:
+def sizes_of(kind: CaseKind) -> tuple[float, ...]:
     """Dimensionless sizes of a load; EI is the smaller principal one."""
-    low, high = (0.1, 100.0) if kind is Kind.PRESSURE else (1e-2, 1e4)
+    low, high = (0.1, 100.0) if kind is CaseKind.PRESSURE else (1e-2, 1e4)
     return tuple(float(f"{size:.3g}") for size in np.geomspace(low, high, SIZES))
 
 
 @dataclass(frozen=True)
-class Case:
-    """What there is to solve: number `index` of a seed. size : see `Kind.text`."""
+class RodCase:
+    """What there is to solve: number `index` of a seed. size : see `CaseKind.text`."""
 
     seed: int
     index: int
-    kind: Kind
+    kind: CaseKind
     size: float
     slenderness: float
 
 
-def case_of(seed: int, index: int) -> Case:
+def case_of(seed: int, index: int) -> RodCase:
     """The case of that number; a row of cases fills kinds and sizes evenly."""
-    kinds = list(Kind)
+    kinds = list(CaseKind)
     kind = kinds[index % len(kinds)]
     cell, turn = index % (len(kinds) * SIZES), index // (len(kinds) * SIZES)
     slenderness = SLENDERNESSES[(turn + 4 * cell) % len(SLENDERNESSES)]
-    return Case(seed, index, kind, sizes_of(kind)[cell // len(kinds)], slenderness)
+    return RodCase(seed, index, kind, sizes_of(kind)[cell // len(kinds)], slenderness)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class LoadedSection:
     rest: FloatArray
 
     @classmethod
-    def of(cls, case: Case) -> LoadedSection:
+    def of(cls, case: RodCase) -> LoadedSection:
         """Section and directions come from a stream of the case's own."""
         scene, plain = _plain_model()
         section = random_section(scene, plain, (case.seed, case.index))
@@ -145,12 +145,12 @@ def _pressure(
     return light, pressures * size / (bent * model.length)
 
 
-LOADED: dict[Kind, Loaded] = {
-    Kind.WEIGHT: _weight,
-    Kind.TRANSVERSE: _transverse,
-    Kind.AXIAL: _axial,
-    Kind.FOLLOWER: _follower,
-    Kind.PRESSURE: _pressure,
+LOADED: dict[CaseKind, Loaded] = {
+    CaseKind.WEIGHT: _weight,
+    CaseKind.TRANSVERSE: _transverse,
+    CaseKind.AXIAL: _axial,
+    CaseKind.FOLLOWER: _follower,
+    CaseKind.PRESSURE: _pressure,
 }
 
 

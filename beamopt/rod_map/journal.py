@@ -8,16 +8,16 @@ from typing import Any
 
 from beamopt.rod.status import RodStatus
 from beamopt.rod_map.cases import case_of
-from beamopt.rod_map.sampling import Row, Sample
-from beamopt.rod_map.verdict import Verdict, Witness
+from beamopt.rod_map.sampling import MethodSample, Sample
+from beamopt.rod_map.verdict import MethodVerdict, Witness
 from beamopt.storage.line_journal import LineJournal
 
-__all__ = ["Journal"]
+__all__ = ["SampleJournal"]
 
 SCHEMA = "beamopt-stability/1"
 
 
-class Journal:
+class SampleJournal:
     """A file with a line that says what is sampled, and one a sample.
 
     path : of the file. asked : what the samples depend on; that of a file that is there must be
@@ -60,7 +60,9 @@ def _data(sample: Sample) -> dict[str, Any]:
 def _sample(seed: int, data: dict[str, Any]) -> Sample:
     case = case_of(seed, data["index"])
     rows = tuple(
-        Row(case, method, resolution, Verdict[verdict], RodStatus[status], distance, seconds)
+        MethodSample(
+            case, method, resolution, MethodVerdict[verdict], RodStatus[status], distance, seconds
+        )
         for method, resolution, verdict, status, distance, seconds in data["rows"]
     )
     # earlier versions wrote names in small letters

@@ -10,11 +10,11 @@ import numpy as np
 from beamopt.base.provenance import provenance
 from beamopt.plot.stability_map import Cell, Panel, map_figure
 from beamopt.plot.style import save_figure
-from beamopt.rod_map.cases import SLENDERNESSES, Kind, sizes_of
+from beamopt.rod_map.cases import SLENDERNESSES, CaseKind, sizes_of
 from beamopt.rod_map.reading import reading
-from beamopt.rod_map.sampling import LIMIT, Row, Sample
+from beamopt.rod_map.sampling import LIMIT, MethodSample, Sample
 from beamopt.rod_map.summary import commonest, rates_of
-from beamopt.rod_map.verdict import Verdict
+from beamopt.rod_map.verdict import MethodVerdict
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 
 __all__ = ["NAMES", "write_map"]
@@ -70,26 +70,26 @@ def _rounded(value: float) -> float | None:
 
 def _success_csv(samples: Sequence[Sample]) -> str:
     """A row a method and kind of load, and one a method for all of them."""
-    names = [verdict.name.lower() for verdict in Verdict]
+    names = [verdict.name.lower() for verdict in MethodVerdict]
     lines = []
     for method in _methods(samples):
-        for kind in (*Kind, None):
+        for kind in (*CaseKind, None):
             rows = _rows(samples, lambda row, m=method, k=kind: _is(row, m, k))  # type: ignore[misc]
             if not rows:
                 continue
             rates = rates_of(rows)
-            counts = [rates.verdicts[verdict] for verdict in Verdict]
+            counts = [rates.verdicts[verdict] for verdict in MethodVerdict]
             shares = (_rounded(rates.success), _rounded(rates.wrong_tips), _rounded(rates.seconds))
             lines.append((method, kind.value if kind else "all", rates.cases, *counts, *shares))
     header = f"method,kind,cases,{','.join(names)},success,wrong_tips,median_seconds"
     return csv_text(header, lines)
 
 
-def _is(row: Row, method: str, kind: Kind | None) -> bool:
+def _is(row: MethodSample, method: str, kind: CaseKind | None) -> bool:
     return row.method == method and kind in (None, row.case.kind)
 
 
-def _rows(samples: Sequence[Sample], wanted: Callable[[Row], bool]) -> list[Row]:
+def _rows(samples: Sequence[Sample], wanted: Callable[[MethodSample], bool]) -> list[MethodSample]:
     return [row for sample in samples for row in sample.rows if wanted(row)]
 
 
@@ -106,9 +106,9 @@ def _draw(folder: Path, samples: Sequence[Sample]) -> None:
             [(f"{size:g}", size) for size in sizes_of(kind)],
             lambda row: row.case.size,
         )
-        for kind in Kind
+        for kind in CaseKind
     ]
-    texts = {verdict.name: verdict.value for verdict in Verdict}
+    texts = {verdict.name: verdict.value for verdict in MethodVerdict}
     title = f"{count}: commonest verdict and median time"
     figure = map_figure(by_size, title, texts=texts)
     save_figure(figure, folder / "stability.svg", folder / "stability.png")
@@ -129,7 +129,7 @@ def _panel(
     title: str,
     samples: Sequence[Sample],
     columns: Sequence[tuple[str, float]],
-    value_of: Callable[[Row], float],
+    value_of: Callable[[MethodSample], float],
     *,
     with_share: bool = False,
 ) -> Panel:
@@ -138,7 +138,7 @@ def _panel(
     with_share : of successes, in each cell; of many loads together the commonest says little.
     """
     methods = _methods(samples)
-    found: dict[tuple[str, float], list[Row]] = {}
+    found: dict[tuple[str, float], list[MethodSample]] = {}
     for sample in samples:
         for row in sample.rows:
             found.setdefault((row.method, value_of(row)), []).append(row)
@@ -149,7 +149,7 @@ def _panel(
     return Panel(title, methods, [text for text, _ in columns], cells)
 
 
-def _cell(rows: Sequence[Row], with_share: bool) -> Cell | None:
+def _cell(rows: Sequence[MethodSample], with_share: bool) -> Cell | None:
     if not rows:
         return None
     usual = commonest(rows)

@@ -9,10 +9,10 @@ from textwrap import fill
 import numpy as np
 
 from beamopt.rod.status import RodStatus
-from beamopt.rod_map.cases import Kind, sizes_of
-from beamopt.rod_map.sampling import ADAPTIVE, LIMIT, Row, Sample
+from beamopt.rod_map.cases import CaseKind, sizes_of
+from beamopt.rod_map.sampling import ADAPTIVE, LIMIT, MethodSample, Sample
 from beamopt.rod_map.summary import Rates, rates_of
-from beamopt.rod_map.verdict import NEAR, RIGHT, Verdict, Witness
+from beamopt.rod_map.verdict import NEAR, RIGHT, MethodVerdict, Witness
 
 __all__ = ["reading"]
 
@@ -21,7 +21,7 @@ MOST_LISTED = 20
 WIDTH = 110
 SENSE = 10.0  # sizes up to this one are what scenes are made of
 
-Rows = dict[str, list[Row]]
+Rows = dict[str, list[MethodSample]]
 
 
 def reading(samples: Sequence[Sample]) -> str:
@@ -82,7 +82,7 @@ def _rates_table(rows: Rows, rates: dict[str, Rates]) -> str:
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
     ]
     for method, one in rates.items():
-        verdicts = (Verdict.INACCURATE, Verdict.REFUSED_WRONGLY, Verdict.TOO_SLOW)
+        verdicts = (MethodVerdict.INACCURATE, MethodVerdict.REFUSED_WRONGLY, MethodVerdict.TOO_SLOW)
         shares = [one.verdicts[verdict] / max(one.decided, 1) for verdict in verdicts]
         cells = [f"{share:.1%}" for share in (one.success, *shares, one.wrong_tips)]
         cells.append(f"{1e3 * one.seconds:.2g} ms")
@@ -93,15 +93,15 @@ def _rates_table(rows: Rows, rates: dict[str, Rates]) -> str:
 
 
 def _reach_table(rows: Rows) -> str:
-    head = " | ".join(kind.value for kind in Kind)
-    lines = [f"| method | {head} |", f"| --- |{' ---: |' * len(Kind)}"]
+    head = " | ".join(kind.value for kind in CaseKind)
+    lines = [f"| method | {head} |", f"| --- |{' ---: |' * len(CaseKind)}"]
     for method, own in rows.items():
-        cells = [_reach(own, kind) for kind in Kind]
+        cells = [_reach(own, kind) for kind in CaseKind]
         lines.append(f"| {method} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def _reach(rows: Sequence[Row], kind: Kind) -> str:
+def _reach(rows: Sequence[MethodSample], kind: CaseKind) -> str:
     """The largest size up to which a method masters a kind of load; what was reached at all."""
     reached, beyond = None, False
     for size in sizes_of(kind):
@@ -117,16 +117,16 @@ def _reach(rows: Sequence[Row], kind: Kind) -> str:
     return f"{reached:g}" if beyond else f"{reached:g} (all)"
 
 
-def _failures(rows: Sequence[Row], rates: Rates) -> str:
+def _failures(rows: Sequence[MethodSample], rates: Rates) -> str:
     """Verdicts other than success, the commonest first, with the kinds of load they come with."""
     said = []
     for verdict, count in rates.verdicts.most_common():
-        if verdict.is_success or verdict is Verdict.UNDECIDED:
+        if verdict.is_success or verdict is MethodVerdict.UNDECIDED:
             continue
         kinds = Counter(row.case.kind.value for row in rows if row.verdict is verdict)
         where = ", ".join(f"{kind} {number}" for kind, number in kinds.most_common())
         text = f"{verdict.value} {count} ({where})"
-        if verdict is Verdict.REFUSED_WRONGLY:
+        if verdict is MethodVerdict.REFUSED_WRONGLY:
             why = rates.reasons.most_common()
             text += ", saying " + ", ".join(f"“{one.value}” {number}" for one, number in why)
         said.append(text)
@@ -170,8 +170,8 @@ def _order(rows: Rows, rates: dict[str, Rates]) -> str:
     return _paragraph(*said)
 
 
-def _is_failure(verdict: Verdict) -> bool:
-    return not verdict.is_success and verdict is not Verdict.UNDECIDED
+def _is_failure(verdict: MethodVerdict) -> bool:
+    return not verdict.is_success and verdict is not MethodVerdict.UNDECIDED
 
 
 def _wrong_tips(rows: Rows) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from beamopt.base.errors import InputError
 from beamopt.base.processes import in_process, processes
 from beamopt.base.tasks import Tasks, check_none_lost, solve_all
-from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.journal import SampleJournal
 from beamopt.rod_map.map_report import NAMES, write_map
 from beamopt.rod_map.sampling import METHODS, Sample, solve_sample
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
@@ -46,7 +46,7 @@ def run_stability(
     NotComputedError : the processes of some samples died; all others are done.
     """
     with claimed(out, KIND, resume=resume):
-        journal = Journal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
+        journal = SampleJournal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
         clear_leftovers(out, (JOURNAL, *NAMES))
         more = max(journal.samples, default=-1) + 1
         if more > samples:
@@ -60,7 +60,7 @@ def run_stability(
 
 
 def _solve(
-    journal: Journal,
+    journal: SampleJournal,
     samples: Sequence[int],
     seed: int,
     workers: int,

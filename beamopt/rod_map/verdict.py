@@ -10,12 +10,12 @@ import numpy as np
 from beamopt.base.arrays import FloatArray
 from beamopt.rod.status import RodStatus
 
-__all__ = ["NEAR", "RIGHT", "Answer", "Truth", "Verdict", "Witness", "apart", "judged"]
+__all__ = ["NEAR", "RIGHT", "MethodAnswer", "MethodVerdict", "Truth", "Witness", "apart", "judged"]
 
 RIGHT, NEAR = 0.01, 0.05  # shares: distances from the truth
 
 
-class Verdict(Enum):
+class MethodVerdict(Enum):
     """The value is the text shown to people."""
 
     RIGHT = "right"
@@ -30,16 +30,16 @@ class Verdict(Enum):
     @property
     def is_success(self) -> bool:
         """Whether a person is told what is so."""
-        return self in (Verdict.RIGHT, Verdict.REFUSED_RIGHTLY)
+        return self in (MethodVerdict.RIGHT, MethodVerdict.REFUSED_RIGHTLY)
 
     @property
     def is_wrong_tip(self) -> bool:
         """Whether a person is told what is not so: the worst that a method can do."""
-        return self in (Verdict.WRONG_BRANCH, Verdict.NO_SUCH_TIP)
+        return self in (MethodVerdict.WRONG_BRANCH, MethodVerdict.NO_SUCH_TIP)
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class MethodAnswer:
     """What a method said of one rod, after how many seconds. tip : (3,) [mm], NaN without one."""
 
     status: RodStatus
@@ -75,24 +75,28 @@ class Truth:
         return self.witness is not Witness.NEITHER
 
 
-def judged(answer: Answer, truth: Truth, length: float, limit: float) -> tuple[Verdict, float]:
+def judged(
+    answer: MethodAnswer, truth: Truth, length: float, limit: float
+) -> tuple[MethodVerdict, float]:
     """A verdict, and how far the tip is `apart` from the truth (NaN without one).
 
     limit : seconds after which an answer is too slow.
     """
     distance = apart(answer.tip, truth.tip, length)
     if not truth.known:
-        return Verdict.UNDECIDED, np.nan
+        return MethodVerdict.UNDECIDED, np.nan
     if answer.status is RodStatus.TOO_SLOW or answer.seconds > limit:
-        return Verdict.TOO_SLOW, distance
+        return MethodVerdict.TOO_SLOW, distance
     has_tip, has_truth = (one.status is RodStatus.CONVERGED for one in (answer, truth))
     if not has_tip:
-        return (Verdict.REFUSED_WRONGLY if has_truth else Verdict.REFUSED_RIGHTLY), np.nan
+        return (
+            MethodVerdict.REFUSED_WRONGLY if has_truth else MethodVerdict.REFUSED_RIGHTLY
+        ), np.nan
     if not has_truth:
-        return Verdict.NO_SUCH_TIP, np.nan
+        return MethodVerdict.NO_SUCH_TIP, np.nan
     if distance <= RIGHT:
-        return Verdict.RIGHT, distance
-    return (Verdict.INACCURATE if distance <= NEAR else Verdict.WRONG_BRANCH), distance
+        return MethodVerdict.RIGHT, distance
+    return (MethodVerdict.INACCURATE if distance <= NEAR else MethodVerdict.WRONG_BRANCH), distance
 
 
 def apart(tip: FloatArray, other: FloatArray, length: float) -> float:

@@ -13,11 +13,11 @@ from pydantic import Field, model_validator
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
-from beamopt.rod.ladder import Loads, Piece, RodModel, Rung, SectionValues
+from beamopt.rod.ladder import Loads, RodModel, RodPiece, Rung, SectionValues
 from beamopt.rod.law import poissons_ratio
 from beamopt.rod.response import linear_response
 from beamopt.rod.rod import LineLoad, PointLoad
-from beamopt.storage.checked_keys import Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Number, quantity
 from beamopt.storage.free_values import FreeTable
 
 __all__ = ["RUNGS", "Actuator", "Loading", "RodRules", "SegmentChoice", "Vector", "rod_model"]
@@ -35,7 +35,7 @@ def _incompressible(given: dict[str, Any]) -> float:
     return float(given["youngs_modulus"] / 3)
 
 
-class Actuator(Model):
+class Actuator(CheckedKeys):
     """The extruded body and its material; without a shear modulus it has G = E/3.
 
     Examples
@@ -56,7 +56,7 @@ class Actuator(Model):
     )
 
 
-class SegmentChoice(Model):
+class SegmentChoice(CheckedKeys):
     """A piece of the actuator; without `file` or `section` of the section that is searched.
 
     Examples
@@ -85,7 +85,7 @@ class SegmentChoice(Model):
         return self
 
 
-class RodRules(Model):
+class RodRules(CheckedKeys):
     """The rod that judges sections: an arc, a chain of them, or a rod under loads.
 
     "auto" takes the lowest rung that is exact, or near enough; `beamopt rung SCENE` says why.
@@ -125,7 +125,7 @@ class RodRules(Model):
         return self
 
 
-class Loading(Model):
+class Loading(CheckedKeys):
     """What loads the actuator besides pressure. The room's z axis points up.
 
     Forces keep their direction in the room; followers turn with the section that they act on.
@@ -221,14 +221,14 @@ def rod_model(
         shear_modulus=actuator.shear_modulus,
         response_of=partial(linear_response, youngs_modulus=actuator.youngs_modulus),
         pieces=tuple(
-            Piece(
+            RodPiece(
                 one.share,
                 math.radians(one.turned),
                 None if one.section is None else values_of(one.section, nu),
             )
             for one in rules.segments
         )
-        or (Piece(1.0),),
+        or (RodPiece(1.0),),
         loads=loads.loads,
         curvature=np.array(rules.rest_curvature),
         method=rules.method,

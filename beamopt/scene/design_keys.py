@@ -10,13 +10,13 @@ from beamopt.scene.actuator import Actuator, Loading, RodRules
 from beamopt.scene.drawn_chambers import DrawnChamber, Points, check_drawing
 from beamopt.scene.grid_keys import Grid, Levels, WallElements
 from beamopt.scene.seal_keys import Seal
-from beamopt.storage.checked_keys import Model, quantity
+from beamopt.storage.checked_keys import CheckedKeys, quantity
 from beamopt.storage.free_values import FreeTable
 
 __all__ = ["DesignKeys"]
 
 
-class DesignKeys(Model):
+class DesignKeys(CheckedKeys):
     """Keys of a design file."""
 
     schema_: Literal["beamopt-design/1"] = Field(alias="schema")

@@ -13,14 +13,14 @@ from beamopt.section.cross_section import CrossSection
 from beamopt.section.drawing import Circle, RingPiece, Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
-from beamopt.storage.checked_keys import Count, Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, Number, quantity
 
 __all__ = ["DrawnChamber", "Points", "check_drawing", "lost_in_raster"]
 
 Position = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 
 
-class Points(Model):
+class Points(CheckedKeys):
     """Voronoi feature points [mm]; type 0 is material, 1…3 a supply.
 
     Examples
@@ -49,7 +49,7 @@ class Points(Model):
         return self
 
 
-class DrawnChamber(Model):
+class DrawnChamber(CheckedKeys):
     """Either a piece of a ring (r, phi, corner) or a circle (center, radius).
 
     Examples

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, model_validator
 
 from beamopt.section.grid import PolarGrid
-from beamopt.storage.checked_keys import Count, Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, Number, quantity
 
 __all__ = ["Grid", "Levels", "WallElements"]
 
@@ -17,7 +17,7 @@ MOST_ELEMENTS = 4_000_000
 Pressure = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2000)]
 
 
-class Grid(Model):
+class Grid(CheckedKeys):
     """The polar grid of equal-area elements.
 
     Examples

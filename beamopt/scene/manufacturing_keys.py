@@ -9,7 +9,7 @@ from pydantic import Field
 from beamopt.section.grid import PolarGrid
 from beamopt.section.manufacturing import MakingRules
 from beamopt.section.symmetry import Symmetry, mirror_symmetry, threefold_symmetry
-from beamopt.storage.checked_keys import Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Number, quantity
 
 __all__ = ["Making"]
 
@@ -18,7 +18,7 @@ KILOGRAMS_PER_M3 = 1e-6  # g/mm³
 MostChambers = Annotated[int, Field(strict=True, ge=0, le=1000)]
 
 
-class Making(Model):
+class Making(CheckedKeys):
     """What makes a section easy to make; weighted rules add to the loss that the search looks at.
 
     A rejected candidate is never selected: with many feature points hardly any random section has

@@ -33,7 +33,7 @@ from beamopt.scene.target_keys import TargetChoice
 from beamopt.section.cross_section import CrossSection
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.saint_venant import section_saint_venant
-from beamopt.storage.checked_keys import Count, Model, Number, parse, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, Number, parse, quantity
 from beamopt.storage.input_file import parse_toml, read_text
 from beamopt.target.target import Target, oddities, read_target
 from beamopt.target.workspace import Workspace
@@ -45,7 +45,7 @@ SCHEMA = "beamopt-scene/1"
 SAMPLES, MOST_SAMPLES, SAMPLE = 4, 12, 0x5EC710  # to try the rungs on, of how many; their stream
 
 
-class SectionRules(Model):
+class SectionRules(CheckedKeys):
     """How a section is made from feature points.
 
     Examples
@@ -66,7 +66,7 @@ class SectionRules(Model):
     )
 
 
-class Pressures(Model):
+class Pressures(CheckedKeys):
     """What the supplies can give.
 
     Examples
@@ -81,7 +81,7 @@ class Pressures(Model):
     )
 
 
-class Scene(Model):
+class Scene(CheckedKeys):
     """Everything that a search needs, as one checked and frozen object.
 
     Examples

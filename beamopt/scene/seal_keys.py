@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
-from beamopt.storage.checked_keys import Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Number, quantity
 
 __all__ = ["Seal"]
 
@@ -16,7 +16,7 @@ WITH_SKIN = ("wall", "rounding", "smallest_chamber")
 ALWAYS_WRITTEN = ("skin", "wall", "islands")
 
 
-class Seal(Model):
+class Seal(CheckedKeys):
     """What makes a section one that can be cast and holds air; with all 0 it is the paper's.
 
     A wall is kept between chambers of different supplies; gaps in one supply's chambers that are

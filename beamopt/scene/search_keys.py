@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Literal
 
 from beamopt.scene.generation_size import check_generation
-from beamopt.storage.checked_keys import Count, Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, Number, quantity
 
 __all__ = ["Refining", "Search", "Stop"]
 
 
-class Search(Model):
+class Search(CheckedKeys):
     """The genetic algorithm.
 
     Examples
@@ -42,7 +42,7 @@ class Search(Model):
         check_generation("search.population", self.population, batch, points, elements)
 
 
-class Stop(Model):
+class Stop(CheckedKeys):
     """Reasons to stop before the last generation; a key that is left out never does.
 
     Examples
@@ -60,7 +60,7 @@ class Stop(Model):
     loss: Number | None = quantity(None, "an L that is good enough", unit="mm²", low=0)
 
 
-class Refining(Model):
+class Refining(CheckedKeys):
     """What goes beyond the genetic algorithm: annealing of types, Gauss-Newton on positions.
 
     Examples

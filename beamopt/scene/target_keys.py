@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from beamopt.base.errors import InputError
 from beamopt.scene.actuator import Vector
-from beamopt.storage.checked_keys import Count, Model, Number, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, Number, quantity
 from beamopt.target.aim import Aim
 from beamopt.target.point_table import read_pairs
 from beamopt.target.target import BaseFrame, Target
@@ -25,7 +25,7 @@ OF_FILES = ("section", "workspace", "points")
 OF_TABLES = ("workspace", "points", "paths")
 
 
-class TargetChoice(Model):
+class TargetChoice(CheckedKeys):
     """What the tip should reach.
 
     kind "random": the workspace of a random section; "section": that of a design file; "workspace":

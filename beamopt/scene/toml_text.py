@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 from beamopt.scene.scene import Scene
-from beamopt.storage.checked_keys import Model, allowed
+from beamopt.storage.checked_keys import CheckedKeys, allowed
 
 __all__ = ["scene_text"]
 
@@ -18,7 +18,7 @@ def scene_text(scene: Scene) -> str:
     tables: list[str] = []
     for name, field in Scene.model_fields.items():
         value = getattr(scene, name)
-        if not isinstance(value, Model):
+        if not isinstance(value, CheckedKeys):
             plain.append(f"{field.alias or name} = {_toml(value)}  # {field.description}")
             continue
         text = " ".join((type(value).__doc__ or "").split())
@@ -26,7 +26,7 @@ def scene_text(scene: Scene) -> str:
     return "\n".join(plain + tables) + "\n"
 
 
-def _table(model: Model) -> list[str]:
+def _table(model: CheckedKeys) -> list[str]:
     lines = []
     for name, field in type(model).model_fields.items():
         value, limits = getattr(model, name), allowed(field)
@@ -38,7 +38,7 @@ def _table(model: Model) -> list[str]:
 def _toml(value: Any) -> str:
     if isinstance(value, str):
         return _text(value)
-    if isinstance(value, Model):
+    if isinstance(value, CheckedKeys):
         return _toml(value.model_dump(exclude_defaults=True))
     if isinstance(value, dict):
         return "{" + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + "}"

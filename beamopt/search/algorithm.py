@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from beamopt.base.random_streams import Purpose, stream
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import JudgeStatus, Verdict
 from beamopt.scene.scene import Scene
 from beamopt.search.improvement import Improvement
 from beamopt.search.variation import Variation
 from beamopt.section.feature_points import FeaturePoints
 
-__all__ = ["Generation", "GeneticAlgorithm", "Individual", "Stage"]
+__all__ = ["CandidateKind", "Generation", "GeneticAlgorithm", "Individual"]
 
 
-class Stage(Enum):
+class CandidateKind(Enum):
     """Kind of the candidates asked for; the value is the text shown to people."""
 
     INITIAL = "initial"
@@ -78,7 +78,7 @@ class Generation:
     population: tuple[Individual, ...]
     best: Individual
     best_ever: Individual
-    rejected: Mapping[Status, int] = field(default_factory=dict)
+    rejected: Mapping[JudgeStatus, int] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         L, ever = self.best.verdict.L, self.best_ever.verdict.L
@@ -114,7 +114,7 @@ class GeneticAlgorithm:
         self._settings = scene.search
         self._improvement = improvement
         self._variation = Variation(scene)
-        self._rejected: Counter[Status] = Counter()
+        self._rejected: Counter[JudgeStatus] = Counter()
         self.rules_set = scene.making.rules_set
         seed = scene.search.seed
         self._pending: list[FeaturePoints] = [
@@ -124,7 +124,7 @@ class GeneticAlgorithm:
         self._chosen: list[int] = []
         self._population: list[Individual] = []
         self._best_ever: Individual | None = None
-        self.stage = Stage.INITIAL
+        self.stage = CandidateKind.INITIAL
         self.generation = 0
         self.evaluations = 0
 
@@ -177,18 +177,18 @@ class GeneticAlgorithm:
         judged = [Individual(p, v) for p, v in zip(self._pending, verdicts, strict=True)]
         self.evaluations += len(judged)
         for one in judged:
-            if one.verdict.status is not Status.JUDGED:
+            if one.verdict.status is not JudgeStatus.JUDGED:
                 self._rejected[one.verdict.status] += 1
             ever = self._best_ever
             if ever is None or one.verdict.ruled_loss < ever.verdict.ruled_loss:
                 self._best_ever = one
-        if self.stage is Stage.INITIAL:
+        if self.stage is CandidateKind.INITIAL:
             self._population = judged
-        elif self.stage is Stage.OFFSPRING:
+        elif self.stage is CandidateKind.OFFSPRING:
             self._select(judged)
             if self._choose_mutants() or self._improve():
                 return None
-        elif self.stage is Stage.MUTANTS:
+        elif self.stage is CandidateKind.MUTANTS:
             for place, mutant in zip(self._chosen, judged, strict=True):
                 self._population[place] = mutant
             if self._improve():
@@ -217,7 +217,7 @@ class GeneticAlgorithm:
             )
             for index, place in enumerate(self._chosen)
         ]
-        self.stage = Stage.MUTANTS
+        self.stage = CandidateKind.MUTANTS
         return bool(self._pending)
 
     def _improve(self) -> bool:
@@ -232,7 +232,7 @@ class GeneticAlgorithm:
             better, judged = self._improvement(points, self.generation, index)
             self.evaluations += judged
             self._pending.append(better)
-        self.stage = Stage.IMPROVED
+        self.stage = CandidateKind.IMPROVED
         return True
 
     def _complete(self) -> Generation:
@@ -241,7 +241,7 @@ class GeneticAlgorithm:
         rejected = dict(self._rejected)
         record = Generation(self.generation, self.evaluations, population, best, ever, rejected)
         self.generation += 1
-        self.stage = Stage.OFFSPRING
+        self.stage = CandidateKind.OFFSPRING
         self._pending = self._recombined()
         return record
 

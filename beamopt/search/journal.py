@@ -16,14 +16,14 @@ from pathlib import Path
 from types import TracebackType
 
 from beamopt.base.errors import InputError
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import JudgeStatus, Verdict
 from beamopt.search.algorithm import GeneticAlgorithm
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.storage.input_file import check_regular
 from beamopt.storage.line_journal import with_digest, without_digest
 from beamopt.storage.writing import naming, refuse_link
 
-__all__ = ["Journal"]
+__all__ = ["SearchJournal"]
 
 HEADER = b'{"schema":"beamopt-journal/2"}\n'
 WITHOUT_DIGESTS = b'{"schema":"beamopt-journal/1"}\n'
@@ -31,10 +31,10 @@ WITHOUT_DIGESTS = b'{"schema":"beamopt-journal/1"}\n'
 HEADERS = {HEADER.decode().rstrip(): True, WITHOUT_DIGESTS.decode().rstrip(): False}
 """First lines, and whether the lines after it have digests."""
 
-FAILURES = {status.name for status in Status if status is not Status.JUDGED}
+FAILURES = {status.name for status in JudgeStatus if status is not JudgeStatus.JUDGED}
 
 
-class Journal:
+class SearchJournal:
     """A journal file, open for going on; use it as a context, in a folder that is claimed.
 
     Raises
@@ -60,7 +60,7 @@ class Journal:
             self.close()
             raise
 
-    def __enter__(self) -> Journal:
+    def __enter__(self) -> SearchJournal:
         return self
 
     def __exit__(
@@ -137,7 +137,7 @@ class Journal:
 
 def _entry(points: FeaturePoints, verdict: Verdict, with_rules: bool) -> list[object]:
     """Digest, L and K, also R with rules; for what is not judged null, null and the status."""
-    if verdict.status is not Status.JUDGED:
+    if verdict.status is not JudgeStatus.JUDGED:
         return [points.digest, None, None, verdict.status.name]
     return [points.digest, verdict.L, verdict.K] + ([verdict.R] if with_rules else [])
 
@@ -173,7 +173,7 @@ def _verdict(entry: object, points: FeaturePoints, with_rules: bool) -> Verdict 
         case [digest, float(L), float(K), float(R)] if digest == points.digest and with_rules:
             return _judged(L, K, R)
         case [digest, None, None, str(name)] if digest == points.digest and name in FAILURES:
-            return Verdict(math.inf, math.inf, Status[name])
+            return Verdict(math.inf, math.inf, JudgeStatus[name])
     return None
 
 

@@ -8,21 +8,21 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 
 from beamopt.base.errors import InputError
-from beamopt.judge.judge import Judge, Status, judge_all
+from beamopt.judge.judge import Judge, JudgeStatus, judge_all
 from beamopt.scene.scene import Scene
 from beamopt.search.algorithm import Generation, GeneticAlgorithm
 from beamopt.search.history import History
 from beamopt.search.improvement import Improvement
-from beamopt.search.journal import Journal
+from beamopt.search.journal import SearchJournal
 from beamopt.search.stopping import StopReason, why_stop
 from beamopt.search.variation import Variation
 from beamopt.storage.timing import Timing
 
-__all__ = ["Ended", "run"]
+__all__ = ["SearchOutcome", "run"]
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class SearchOutcome:
     """How a search ended.
 
     status : why it stopped. last : the last generation.
@@ -40,12 +40,12 @@ def run(
     scene: Scene,
     judge: Judge,
     *,
-    journal: Journal | None = None,
+    journal: SearchJournal | None = None,
     executor: Executor | None = None,
     workers: int = 1,
     callback: Callable[[Generation], None] | None = None,
     ready: Callable[[], None] | None = None,
-) -> Ended:
+) -> SearchOutcome:
     """Ask, judge and tell until there is a reason to stop.
 
     Parameters
@@ -109,11 +109,11 @@ def run(
             raise
     assert last is not None
     status = reason or StopReason.INTERRUPTED
-    if reason is not None and last.best_ever.verdict.status is not Status.JUDGED:
+    if reason is not None and last.best_ever.verdict.status is not JudgeStatus.JUDGED:
         status = StopReason.NOTHING
     judged = search.evaluations - before
     seconds = time.perf_counter() - asking if judged else 0.0
-    return Ended(status, last, history, Timing(seconds, judged, compiling))
+    return SearchOutcome(status, last, history, Timing(seconds, judged, compiling))
 
 
 def _compiling(judge: Judge, scene: Scene, search: GeneticAlgorithm) -> float:
@@ -140,7 +140,9 @@ KEYS = {
 """The key that a search stops for; a time is counted anew."""
 
 
-def _beyond(journal: Journal, scene: Scene, reason: StopReason, generation: int) -> InputError:
+def _beyond(
+    journal: SearchJournal, scene: Scene, reason: StopReason, generation: int
+) -> InputError:
     """The error of a search that was given less than it had before."""
     key = KEYS[reason]
     table, _, name = key.partition(".")

@@ -9,14 +9,14 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from beamopt.judge.judge import Judge, Status
+from beamopt.judge.judge import Judge, JudgeStatus
 from beamopt.refine.refine import StageRecord
 from beamopt.refine.refine_design import refine_points
 from beamopt.scene.design import Design
 from beamopt.scene.scene import Scene
 from beamopt.search.algorithm import Generation, Individual
-from beamopt.search.journal import Journal
-from beamopt.search.loop import Ended, run
+from beamopt.search.journal import SearchJournal
+from beamopt.search.loop import SearchOutcome, run
 from beamopt.search.result import Optimisation
 from beamopt.search.run_folder import RunFolder
 from beamopt.search.stopping import StopReason
@@ -65,7 +65,7 @@ def optimize(
         if out is not None:
             folder = held.enter_context(RunFolder.open(Path(out), resume=resume))
             folder.check(scene)
-            journal = held.enter_context(Journal(folder.journal))
+            journal = held.enter_context(SearchJournal(folder.journal))
         ended = run(
             scene,
             Judge.of_scene(scene, target),
@@ -81,7 +81,7 @@ def optimize(
     return result
 
 
-def _only_refining_was_cut(ended: Ended, result: Optimisation) -> bool:
+def _only_refining_was_cut(ended: SearchOutcome, result: Optimisation) -> bool:
     """True if the search had ended before, and refining it now was interrupted."""
     return ended.timing.judged == 0 and result.status is not ended.status
 
@@ -89,7 +89,7 @@ def _only_refining_was_cut(ended: Ended, result: Optimisation) -> bool:
 def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | None) -> Optimisation:
     """With the best design refined, where the scene asks for it and the search came to an end."""
     ended = result.status is not StopReason.INTERRUPTED
-    if not (result.scene.refine.finish and ended and result.verdict.status is Status.JUDGED):
+    if not (result.scene.refine.finish and ended and result.verdict.status is JudgeStatus.JUDGED):
         return result
     points = result.last.best_ever.points
     try:
@@ -99,7 +99,7 @@ def _refined(result: Optimisation, callback: Callable[[StageRecord], None] | Non
     return replace(result, refinement=found)
 
 
-def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
+def _result(scene: Scene, target: Target, ended: SearchOutcome) -> Optimisation:
     last = ended.last
     best, final = (_design(scene, one) for one in (last.best_ever, last.best))
     return Optimisation(ended.status, scene, target, best, final, last, ended.history, ended.timing)
@@ -107,7 +107,7 @@ def _result(scene: Scene, target: Target, ended: Ended) -> Optimisation:
 
 def _design(scene: Scene, one: Individual) -> Design:
     verdict = one.verdict
-    losses = {} if verdict.status is not Status.JUDGED else {"L": verdict.L, "K": verdict.K}
+    losses = {} if verdict.status is not JudgeStatus.JUDGED else {"L": verdict.L, "K": verdict.K}
     if losses and scene.making.rules_set:
         losses["R"] = verdict.R
     return scene.design_of(one.points, {"scene": scene.name, "seed": scene.search.seed, **losses})

@@ -14,7 +14,7 @@ import numpy as np
 from beamopt.base.errors import InputError
 from beamopt.base.provenance import provenance
 from beamopt.judge.answer_tables import paths_csv, tips_table_csv
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import JudgeStatus
 from beamopt.refine.folder import (
     REFINEMENT_FILES,
     EarlierRefinement,
@@ -142,7 +142,7 @@ class RunFolder:
         -------
         EarlierRefinement : what became of a refinement that was there.
         """
-        found, judged = result.refinement, result.verdict.status is Status.JUDGED
+        found, judged = result.refinement, result.verdict.status is JudgeStatus.JUDGED
         best = result.best.json() if judged else None
         there = becomes(self.path, best, found)
         if there is EarlierRefinement.SET_ASIDE:
@@ -182,10 +182,10 @@ class RunFolder:
         """What the search found; says whether anything is new."""
         rules = result.scene.making.rules_set
         new = self._write("history.csv", history_csv(result.history, rules))
-        if result.verdict.status is not Status.JUDGED:
+        if result.verdict.status is not JudgeStatus.JUDGED:
             return new
         new |= self._write("best.json", result.best.json())
-        if result.last.best.verdict.status is Status.JUDGED:
+        if result.last.best.verdict.status is JudgeStatus.JUDGED:
             new |= self._write("final.json", result.final.json())
         if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
             new |= self._write_tables(result)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from beamopt.bound.folder import bound_summary
-from beamopt.judge.judge import Status, Verdict
+from beamopt.judge.judge import JudgeStatus, Verdict
 from beamopt.reach.reach import TOLERANCE
 from beamopt.scene.actuator import Loading, RodRules
 from beamopt.search.result import Optimisation
@@ -46,9 +46,9 @@ def _making(result: Optimisation) -> dict[str, Any]:
     if not result.scene.making.rules_set:
         return {}
     counts = result.last.rejected
-    rejected = {status.name: counts[status] for status in Status if status in counts}
+    rejected = {status.name: counts[status] for status in JudgeStatus if status in counts}
     best = result.last.best_ever.verdict
-    weighted = {"best_R": best.R} if best.status is Status.JUDGED else {}
+    weighted = {"best_R": best.R} if best.status is JudgeStatus.JUDGED else {}
     return {"rejected": rejected, **weighted}
 
 
@@ -58,28 +58,28 @@ def _rod(result: Optimisation) -> dict[str, Any]:
     if (scene.rod, scene.loads) == (RodRules(), Loading()):
         return {}
     said = {"rung": climb.model.rung.value, "reason": climb.reason}
-    moved = result.neglected if result.verdict.status is Status.JUDGED else None
+    moved = result.neglected if result.verdict.status is JudgeStatus.JUDGED else None
     if moved is None:
         return {"rod": said}
-    there = moved if math.isfinite(moved) else Status.NO_EQUILIBRIUM.value
+    there = moved if math.isfinite(moved) else JudgeStatus.NO_EQUILIBRIUM.value
     return {"rod": said | {"neglected_loads_move_mm": there}}
 
 
 def _outline(result: Optimisation) -> dict[str, Any]:
     """What the best design is once it is polygons; nothing for an unsealed one."""
-    sealed = result.best.seal.rules.sealed and result.verdict.status is Status.JUDGED
+    sealed = result.best.seal.rules.sealed and result.verdict.status is JudgeStatus.JUDGED
     if not sealed:
         return {}
     faults = [str(fault) for fault in result.best.findings]
     if not math.isfinite(result.outline_loss):
-        return {"outline": _ended(Status.NO_EQUILIBRIUM) | {"faults": faults}}
+        return {"outline": _ended(JudgeStatus.NO_EQUILIBRIUM) | {"faults": faults}}
     rms = result.target.aim.rms_distance(result.outline_loss)
     return {"outline": {"L": result.outline_loss, "rms_distance": rms, "faults": faults}}
 
 
 def _paths(result: Optimisation) -> dict[str, Any]:
     """How the best design follows trajectories; nothing without any."""
-    judged = result.verdict.status is Status.JUDGED
+    judged = result.verdict.status is JudgeStatus.JUDGED
     if not judged or result.reach is None or np.isnan(result.reach.distances).any():
         return {}
     distances = result.reach.distances
@@ -89,13 +89,13 @@ def _paths(result: Optimisation) -> dict[str, Any]:
 
 
 def _summary_of(verdict: Verdict, aim: Aim) -> dict[str, Any]:
-    if verdict.status is not Status.JUDGED:
+    if verdict.status is not JudgeStatus.JUDGED:
         return _ended(verdict.status)
     rms = aim.rms_distance(verdict.L)
     losses = {"L": verdict.L, "K": verdict.K, "T": verdict.T, "rms_distance": rms}
     return _ended(verdict.status) | losses
 
 
-def _ended(status: Status) -> dict[str, str]:
+def _ended(status: JudgeStatus) -> dict[str, str]:
     """The text for people, and the name for programs."""
     return {"status": status.value, "ended": status.name}

@@ -21,7 +21,7 @@ from beamopt.section.raster import Tiling, nearest_types, tiling
 from beamopt.section.runs import Runs, room_for_runs
 from beamopt.section.saint_venant import SaintVenant
 from beamopt.section.seal import UNSEALED, SealRules
-from beamopt.section.seal_table import SealTable, Work, seal_table, work
+from beamopt.section.seal_table import SealArrays, SealTable, seal_table, work
 from beamopt.section.sealing import sealed_cells
 from beamopt.section.symmetry import Symmetry
 from beamopt.section.walls import add_walls, wall_steps
@@ -137,7 +137,7 @@ def _measure_sealed(
     tiles: Tiling,
     wall_steps: int,
     table: SealTable,
-    space: Work,
+    space: SealArrays,
     radial: FloatArray,
     angular: FloatArray,
     raw: FloatArray,

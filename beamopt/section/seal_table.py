@@ -12,7 +12,7 @@ from beamopt.section.grid import PolarGrid
 from beamopt.section.seal import SealRules
 from beamopt.section.spans import ROW_SHARE, Spans, circles_of, no_spans, widths_within
 
-__all__ = ["SealTable", "Work", "seal_table", "work"]
+__all__ = ["SealArrays", "SealTable", "seal_table", "work"]
 
 
 class SealTable(NamedTuple):
@@ -44,7 +44,7 @@ class SealTable(NamedTuple):
     fills_islands: bool
 
 
-class Work(NamedTuple):
+class SealArrays(NamedTuple):
     """Arrays that sealing works in; made once for many sections."""
 
     cells: IndexArray
@@ -93,11 +93,11 @@ def _columns_without_skin(grid: PolarGrid, radii: FloatArray, skin: float) -> Fl
     return np.stack([first, last])
 
 
-def work(grid: PolarGrid, table: SealTable) -> Work:
+def work(grid: PolarGrid, table: SealTable) -> SealArrays:
     """Arrays for sealing sections of `grid`."""
     circles = table.free.shape[1]
     one, two, free = (no_spans(circles, grid.angular) for _ in range(3))
-    return Work(
+    return SealArrays(
         np.zeros(grid.shape, dtype=np.int64),
         np.zeros(grid.shape, dtype=np.uint8),
         np.zeros(grid.shape),

@@ -25,7 +25,7 @@ from beamopt.section.fill import fill_islands, fill_small_chambers
 from beamopt.section.grid import PolarGrid
 from beamopt.section.raster import Tiling, nearest_types, tiling
 from beamopt.section.seal import SealRules
-from beamopt.section.seal_table import SealTable, Work, seal_table, work
+from beamopt.section.seal_table import SealArrays, SealTable, seal_table, work
 from beamopt.section.spans import Spans, add_span, close, complement, dilate, intersect, open_
 from beamopt.section.walls import add_walls
 
@@ -69,7 +69,7 @@ def sealed_cells(
     tiles: Tiling,
     wall_steps: int,
     table: SealTable,
-    space: Work,
+    space: SealArrays,
     labels: LabelArray,
 ) -> None:
     """Write the types of a sealed Voronoi section to `labels`."""
@@ -102,7 +102,7 @@ def _types_of(cells: IndexArray, types: LabelArray, labels: LabelArray) -> None:
 
 
 @compiled
-def _seal(labels: LabelArray, table: SealTable, space: Work) -> None:
+def _seal(labels: LabelArray, table: SealTable, space: SealArrays) -> None:
     """Apply the rules to `labels`, with borders and owners as they stand in `space`."""
     sealed, period = space.sealed, table.period
     one, two, free = space.one, space.two, space.free

@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from beamopt.base.brief import Brief
 from beamopt.base.errors import InputError
 
-__all__ = ["Count", "Model", "Number", "allowed", "parse", "quantity"]
+__all__ = ["CheckedKeys", "Count", "Number", "allowed", "parse", "quantity"]
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number; text and booleans are refused."""
@@ -25,7 +25,7 @@ PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("_")} - {"mod
 """Names of pydantic's that completion leaves out."""
 
 
-class Model(BaseModel):
+class CheckedKeys(BaseModel):
     """Frozen, and unknown keys are refused.
 
     A copy holds the keys' values only: what a cached property has computed stays with the object
@@ -56,8 +56,8 @@ class Model(BaseModel):
 
     def __dir__(self) -> Iterable[str]:
         """Keys, own methods and properties, and `model_copy`: pydantic's other names are hidden."""
-        models = [model for model in type(self).__mro__[:-1] if issubclass(model, Model)]
-        own = {name for model in models if model is not Model for name in vars(model)}
+        models = [model for model in type(self).__mro__[:-1] if issubclass(model, CheckedKeys)]
+        own = {name for model in models if model is not CheckedKeys for name in vars(model)}
         hidden = PYDANTIC - {name for name in own if not name.startswith("model_")}
         return sorted(set(super().__dir__()) - hidden)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.provenance import provenance
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import JudgeStatus
 from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
 from beamopt.scene.design import Design, load_design
@@ -97,7 +97,11 @@ def _best_and_worst(
     A search whose last population could not be judged has none.
     """
     ordered = sorted(
-        (one for one in outcomes if one.run.target == target and one.final.status is Status.JUDGED),
+        (
+            one
+            for one in outcomes
+            if one.run.target == target and one.final.status is JudgeStatus.JUDGED
+        ),
         key=lambda one: one.final.L,
     )
     designs = []

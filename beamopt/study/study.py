@@ -17,7 +17,7 @@ from beamopt.base.tasks import Tasks, check_none_lost, solve_all
 from beamopt.refine.refine_design import Refinement
 from beamopt.search.optimize import optimize
 from beamopt.search.stopping import StopReason
-from beamopt.storage.checked_keys import Count, Model, parse, quantity
+from beamopt.storage.checked_keys import CheckedKeys, Count, parse, quantity
 from beamopt.storage.input_file import read_json
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, own_subfolder
 from beamopt.storage.timing import read_times
@@ -34,7 +34,7 @@ Callback = Callable[[Outcome, int, int], None]
 KIND = FolderKind("a study", "study.json", ('{"schema":"beamopt-study/',))
 
 
-class StudyFile(Model):
+class StudyFile(CheckedKeys):
     """What `study.json` says of the study in its folder."""
 
     schema_: Literal["beamopt-study/1"] = Field(default="beamopt-study/1", alias="schema")

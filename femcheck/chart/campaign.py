@@ -31,7 +31,7 @@ from femcheck.models.reply import Model, nothing
 from femcheck.models.solid import SolidModel
 from femcheck.solved.folder import PACKAGES
 
-__all__ = ["Budget", "run_chart"]
+__all__ = ["TimeBudget", "run_chart"]
 
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
 KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
@@ -46,7 +46,7 @@ Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
 @dataclass(frozen=True, slots=True)
-class Budget:
+class TimeBudget:
     """seconds : of processor time that a model may be expected to take; others are left out.
 
     None are left out by default.
@@ -60,7 +60,7 @@ def run_chart(
     out: Path,
     *,
     families: Sequence[str] | None = None,
-    budget: Budget | None = None,
+    budget: TimeBudget | None = None,
     workers: int = 1,
     resume: bool = False,
     progress: Progress | None = None,
@@ -98,7 +98,9 @@ def run_chart(
         journal = journal_of(out, asked_of(question))
         clear_leftovers(out, NAMES)
         measured = measured_in(journal, question.law.limits.iterations)
-        _measure(question, series, journal, measured, budget or Budget(), workers, progress, pool)
+        _measure(
+            question, series, journal, measured, budget or TimeBudget(), workers, progress, pool
+        )
         chart = chart_of(question, measured)
         _write(chart, out, workers)
     return chart
@@ -109,7 +111,7 @@ def _measure(
     series: Sequence[Series],
     journal: LineJournal,
     measured: dict[str, Measured],
-    budget: Budget,
+    budget: TimeBudget,
     workers: int,
     progress: Progress | None,
     pool: Pool,
@@ -139,7 +141,7 @@ class _ChartWork:
 
     question: Question
     series: Sequence[Series]
-    budget: Budget
+    budget: TimeBudget
     results: dict[str, Measured]
 
     def __post_init__(self) -> None:
@@ -176,7 +178,7 @@ class _ChartWork:
 
 
 def _too_dear(
-    series: Series, model: Model, measured: dict[str, Measured], budget: Budget
+    series: Series, model: Model, measured: dict[str, Measured], budget: TimeBudget
 ) -> Ended | None:
     """Why a model is left out; None where it is asked."""
     guess = _guessed(series, model, measured)

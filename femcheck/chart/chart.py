@@ -19,7 +19,7 @@ from femcheck.models.solid import SolidModel
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["ACCURACIES", "Chart", "Row", "chart_csv"]
+__all__ = ["ACCURACIES", "Chart", "ChartRow", "chart_csv"]
 
 HEADER = "family,resolution,error_mm,cpu_seconds,unknowns,found,of,size,status,ended"
 
@@ -30,7 +30,7 @@ NO_MARKS: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class ChartRow:
     """A model's place on the chart.
 
     error : largest distance of a tip from the reference [mm]; NaN without any, or any reference.
@@ -67,7 +67,7 @@ class Chart:
     """
 
     question: Question
-    rows: tuple[Row, ...]
+    rows: tuple[ChartRow, ...]
     reference: Reference | None
 
     def __repr__(self) -> str:
@@ -118,7 +118,7 @@ class Chart:
             dict.fromkeys(row.measured.made_with for row in self.rows if row.measured.made_with)
         )
 
-    def within(self, accuracy: float) -> list[Row]:
+    def within(self, accuracy: float) -> list[ChartRow]:
         """Rows with all tips within `accuracy` [mm] wherever the truth is in its band.
 
         The cheapest first.
@@ -127,12 +127,12 @@ class Chart:
         near = [row for row in self.rows if row.is_whole and row.error <= most]
         return sorted(near, key=lambda row: row.measured.seconds)
 
-    def cheapest(self, accuracy: float, family: str | None = None) -> Row | None:
+    def cheapest(self, accuracy: float, family: str | None = None) -> ChartRow | None:
         """The cheapest within `accuracy` [mm], of all or of one family; None where none is."""
         near = self.within(accuracy)
         return next((row for row in near if family in (None, row.measured.family)), None)
 
-    def solids(self, element: str) -> Iterator[tuple[SolidModel, Row]]:
+    def solids(self, element: str) -> Iterator[tuple[SolidModel, ChartRow]]:
         """The solids of an element with their rows, from coarse to fine."""
         rows = {row.measured.name: row for row in self.rows}
         for series in line_up(self.question, [element]):
@@ -186,12 +186,12 @@ class Chart:
         """Whether another family was there, and none contradicts the reference."""
         return self.reference is not None and self.reference.is_confirmed
 
-    def _cheapest_solid(self, accuracy: float) -> Row | None:
+    def _cheapest_solid(self, accuracy: float) -> ChartRow | None:
         solids = (row for row in self.within(accuracy) if row.measured.reply.unknowns)
         return next(solids, None)
 
 
-def _said(row: Row) -> str:
+def _said(row: ChartRow) -> str:
     one = row.measured
     name = f"{one.family} {one.resolution}".strip()
     return f"{name} in {seconds_text(one.seconds)} (error {row.error:.2g} mm)"
@@ -204,14 +204,14 @@ def seconds_text(seconds: float) -> str:
     return f"{seconds:.3g} s" if seconds < 120 else f"{seconds / 60:.3g} min"
 
 
-def _row(measured: Measured, reference: Reference | None) -> Row:
+def _row(measured: Measured, reference: Reference | None) -> ChartRow:
     if reference is None:
-        return Row(measured, np.nan, len(measured.reply.endings))
+        return ChartRow(measured, np.nan, len(measured.reply.endings))
     there = np.isfinite(reference.tips[:, 0])
     away = measured.reply.away(reference.tips)
     known = np.isfinite(away)
     error = float(away[known].max()) if known.any() else np.nan
-    return Row(measured, error, int((there & ~known).sum()))
+    return ChartRow(measured, error, int((there & ~known).sum()))
 
 
 def chart_csv(chart: Chart) -> str:
@@ -219,7 +219,7 @@ def chart_csv(chart: Chart) -> str:
     return csv_text(HEADER, [_cells(row) for row in chart.rows])
 
 
-def _cells(row: Row) -> tuple[object, ...]:
+def _cells(row: ChartRow) -> tuple[object, ...]:
     one, reply = row.measured, row.measured.reply
     error, seconds = (None if np.isnan(x) else x for x in (row.error, one.seconds))
     found = int(reply.found.sum())

@@ -14,7 +14,7 @@ from beamopt.plot.style import (
     new_figure,
     styled,
 )
-from femcheck.chart.chart import ACCURACIES, Chart, Row, seconds_text
+from femcheck.chart.chart import ACCURACIES, Chart, ChartRow, seconds_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +64,7 @@ def chart_figure(chart: Chart) -> Figure:
     return figure
 
 
-def _line(axes: Axes, family: str, rows: list[Row]) -> None:
+def _line(axes: Axes, family: str, rows: list[ChartRow]) -> None:
     look = {"ms": 6, "lw": 1.3, "zorder": 4} | LOOKS.get(family, {"color": "k", "marker": "."})
     seconds = np.array([row.measured.seconds for row in rows])
     errors = np.maximum(np.array([row.error for row in rows]), SMALLEST)

@@ -25,7 +25,7 @@ from femcheck.solved.subject import Subject
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-__all__ = ["Comparison", "Tips", "compare", "table_csv"]
+__all__ = ["Comparison", "SolidTips", "compare", "table_csv"]
 
 TABLE = (
     "p1,p2,p3,beam_x,beam_y,beam_z,solid_x,solid_y,solid_z,difference_mm,difference_of_length,"
@@ -35,7 +35,7 @@ TABLE = (
 
 
 @dataclass(frozen=True, eq=False)
-class Tips:
+class SolidTips:
     """Tips of one solid, or extrapolated from several.
 
     mesh : "coarse" or "standard". penalty : c; infinite where extrapolated.
@@ -81,7 +81,7 @@ class Comparison(BesideBeam):
     """
 
     subject: Subject
-    solids: tuple[Tips, ...]
+    solids: tuple[SolidTips, ...]
     refinement: float
     order: float | None
 
@@ -91,12 +91,12 @@ class Comparison(BesideBeam):
             f"{100 * self.median:.3g} % in the median, {self.unanswered} without an answer>"
         )
 
-    def solid(self, mesh: str, penalty: float) -> Tips:
+    def solid(self, mesh: str, penalty: float) -> SolidTips:
         """One of the solids."""
         return next(one for one in self.solids if (one.mesh, one.penalty) == (mesh, penalty))
 
     @cached_property
-    def final(self) -> Tips:
+    def final(self) -> SolidTips:
         """The standard mesh, extrapolated in 1/c: what the beam is judged against."""
         return self.solid("standard", np.inf)
 
@@ -175,7 +175,7 @@ def compare(
     return Comparison(subject, tuple(solids), layers["standard"] / layers["coarse"], order)
 
 
-def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> Tips:
+def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> SolidTips:
     tips, ratios = np.full((NODES, 3), np.nan), np.full((NODES, 3), np.nan)
     statuses, reached = [Status.STOPPED] * NODES, np.zeros(NODES)
     iterations = np.zeros(NODES, dtype=np.int64)
@@ -189,10 +189,10 @@ def _tips(subject: Subject, stage: Stage, results: Mapping[Key, CaseResult]) -> 
             tips[row] = result.outcome.state.tip - centroid
             with np.errstate(invalid="ignore", divide="ignore"):
                 ratios[row] = np.where(undeformed > 0, result.volumes / undeformed, np.nan)
-    return Tips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached, iterations)
+    return SolidTips(stage.mesh, stage.penalty, tips, ratios, tuple(statuses), reached, iterations)
 
 
-def _extrapolated(low: Tips, high: Tips) -> Tips:
+def _extrapolated(low: SolidTips, high: SolidTips) -> SolidTips:
     """Linear in 1/c to 0; a case without an answer in either has none."""
     ratio = 1 / (high.penalty / low.penalty - 1)
     tips = high.tips + ratio * (high.tips - low.tips)
@@ -203,7 +203,7 @@ def _extrapolated(low: Tips, high: Tips) -> Tips:
     ]
     reached = np.minimum(low.reached, high.reached)
     spent = low.iterations + high.iterations
-    return Tips(high.mesh, np.inf, tips, volumes, tuple(worse), reached, spent)
+    return SolidTips(high.mesh, np.inf, tips, volumes, tuple(worse), reached, spent)
 
 
 def table_csv(compared: Comparison) -> str:

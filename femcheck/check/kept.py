@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from femcheck.check.schedule import Key
-from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.state import State
 from femcheck.solved.case import CaseResult
@@ -65,7 +65,7 @@ def _case(shapes: Shapes, digest: str, kept: Any) -> CaseResult | None:
     status = Status[str(kept["status"])]
     negative = int(kept["negative"])
     state = State(kept["x"], kept["tip"], kept["turn"]) if "x" in kept else None
-    outcome = Outcome(
+    outcome = SolidOutcome(
         status,
         state,
         float(kept["reached"]),

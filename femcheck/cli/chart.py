@@ -17,7 +17,7 @@ from beamopt.cli.exit_codes import end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, progress_bar
 from beamopt.scene.grid_keys import Levels
-from femcheck.chart.campaign import Budget, run_chart
+from femcheck.chart.campaign import TimeBudget, run_chart
 from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
 from femcheck.cli.request import RunRequest, options_of
 from femcheck.cli.subjects import question_of
@@ -70,7 +70,7 @@ def chart_command(request: ChartRequest) -> None:
             question,
             folder,
             families=request.families or None,
-            budget=Budget(request.seconds),
+            budget=TimeBudget(request.seconds),
             workers=request.workers,
             resume=request.resume,
             progress=show,

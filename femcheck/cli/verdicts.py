@@ -15,7 +15,7 @@ from femcheck.continuation.outcome import Status
 from femcheck.mesh.gmsh_section import MeshFailure, MeshProblem
 from femcheck.prediction.prediction import Prediction
 from femcheck.regression.regression import Regression
-from femcheck.stability.ending import Ending as CellEnding
+from femcheck.stability.ending import MapEnding as CellEnding
 from femcheck.stability.found import AxisFound, agreement_of
 
 __all__ = ["code_of"]

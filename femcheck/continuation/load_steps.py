@@ -11,7 +11,7 @@ from beamopt.base.arrays import FloatArray
 from femcheck.continuation.direct import DirectSolver
 from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.newton import Newton
-from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State
@@ -41,7 +41,7 @@ class LoadSteps:
         solver: DirectSolver,
         guess: State | None = None,
         budget: Budget | None = None,
-    ) -> Outcome:
+    ) -> SolidOutcome:
         """The equilibrium at `pressures` (3,) [kPa].
 
         Parameters
@@ -58,7 +58,7 @@ class LoadSteps:
         if tried.status is not Status.CONVERGED:
             tried = self._in_steps(problem, shapes, start, pressures, solver, budget, spent)
         spent.seconds = time.process_time() - began
-        return Outcome(
+        return SolidOutcome(
             tried.status,
             tried.state,
             tried.reached,
@@ -76,7 +76,7 @@ class LoadSteps:
         solver: DirectSolver,
         budget: Budget,
         spent: Statistics,
-    ) -> Outcome:
+    ) -> SolidOutcome:
         state, first = start
         at, step = 0.0, 0.5
         here = shapes.of(state)
@@ -97,4 +97,4 @@ class LoadSteps:
                 continue
             step *= self.shrink
             if tried.status.is_limit or step < self.smallest:
-                return Outcome(tried.status, None, at)
+                return SolidOutcome(tried.status, None, at)

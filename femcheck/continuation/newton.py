@@ -11,7 +11,7 @@ from beamopt.base.arrays import FloatArray
 from femcheck.continuation.control import Control, FixedLoad
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.limits import Budget
-from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.solid.equilibrium import Equilibrium, Forces
 from femcheck.solid.state import State
 
@@ -44,7 +44,7 @@ class Newton:
         pressures: FloatArray,
         solver: DirectSolver,
         budget: Budget | None = None,
-    ) -> Outcome:
+    ) -> SolidOutcome:
         """The equilibrium at `pressures` (3,) [kPa] near `start`, or how the search for it ended.
 
         budget : what every iteration is taken from; None: without a limit.
@@ -58,14 +58,14 @@ class Newton:
         control: Control,
         solver: DirectSolver,
         budget: Budget | None = None,
-    ) -> Outcome:
+    ) -> SolidOutcome:
         """The equilibrium near `start` at the pressures that the control settles on."""
         statistics = Statistics(steps=1)
         at_start: int | None = None
         least = np.inf
 
-        def failed(status: Status) -> Outcome:
-            return Outcome(status, None, statistics=statistics, negative_at_start=at_start)
+        def failed(status: Status) -> SolidOutcome:
+            return SolidOutcome(status, None, statistics=statistics, negative_at_start=at_start)
 
         state = start
         forces = _timed(problem, state, control.pressures, statistics)
@@ -93,7 +93,7 @@ class Newton:
             forces = _timed(problem, state, control.pressures, statistics)
             if share == 1 and far <= self.tolerance:
                 residual = float(np.abs(forces.reduced).max())
-                return Outcome(
+                return SolidOutcome(
                     Status.CONVERGED, state, 1.0, residual, unstable, statistics, at_start
                 )
         return failed(Status.STEP_TOO_SMALL)

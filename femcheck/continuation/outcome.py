@@ -7,7 +7,7 @@ from enum import Enum
 
 from femcheck.solid.state import State
 
-__all__ = ["Outcome", "Statistics", "Status"]
+__all__ = ["SolidOutcome", "Statistics", "Status"]
 
 
 class Status(Enum):
@@ -76,7 +76,7 @@ class Statistics:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SolidOutcome:
     """An equilibrium, or why there is none.
 
     state : the equilibrium; None unless converged.

@@ -17,7 +17,7 @@ from femcheck.continuation.control import ArcControl, Control, Mix
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError
 from femcheck.continuation.limits import Budget
 from femcheck.continuation.newton import Newton, unstable_directions
-from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.continuation.path import PathPoint, is_past
 from femcheck.solid.equilibrium import Equilibrium
 from femcheck.solid.state import State
@@ -164,7 +164,7 @@ class Stepper:
             return None
         return self._measured(outcome.state, load, outcome.negative_eigenvalues)[0]
 
-    def _followed(self, guess: State, control: Control) -> Outcome:
+    def _followed(self, guess: State, control: Control) -> SolidOutcome:
         outcome = self._newton.follow(self._problem, guess, control, self._solver, self._budget)
         self.spent.add(outcome.statistics)
         if outcome.status.is_limit:

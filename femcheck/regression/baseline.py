@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 
 from beamopt.base.errors import InputError
-from beamopt.storage.checked_keys import Model, Number, parse
+from beamopt.storage.checked_keys import CheckedKeys, Number, parse
 from beamopt.storage.checked_keys import quantity as described
 from beamopt.storage.input_file import read_json
 from beamopt.storage.result_folder import FolderKind
@@ -50,7 +50,7 @@ Reason = Annotated[str, AfterValidator(_reason)]
 """The key of an ending; in earlier files its text."""
 
 
-class Entry(Model):
+class Entry(CheckedKeys):
     """One thing held; see `Held`."""
 
     rung: Annotated[str, AfterValidator(_known)] = described(..., "of the ladder")
@@ -73,19 +73,19 @@ class Entry(Model):
         return Held(**values | {"rows": rows})
 
 
-class Origin(Model):
+class BaselineOrigin(CheckedKeys):
     """Of which design it is."""
 
     digest: str = described(..., "of all that its tips depend on")
     file: str | None = described(None, "relative to this file; none for one of the package's")
 
 
-class Baseline(Model):
+class Baseline(CheckedKeys):
     """What is held of one design."""
 
     schema_: Literal["femcheck-baseline/1"] = Field(alias="schema")
     name: str = described(..., "of the design")
-    design: Origin = described(..., "digest and file")
+    design: BaselineOrigin = described(..., "digest and file")
     mesh: str | None = described(None, "digest of its kept section mesh, where it has a solid")
     held: tuple[Entry, ...] = described(..., "from the lowest rung on")
 

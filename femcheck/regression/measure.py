@@ -16,7 +16,7 @@ from femcheck.regression.rods import held_rods
 from femcheck.regression.sections import held_sections
 from femcheck.regression.solids import LAWS, held_limit, held_meshes, held_solid
 
-__all__ = ["Measured", "PartKey", "measure_all", "parts_of"]
+__all__ = ["MeasuredPart", "PartKey", "measure_all", "parts_of"]
 
 PartKey = tuple[str, str]
 """The name of a design, and of a part of its rungs."""
@@ -25,7 +25,7 @@ Callback = Callable[[str, str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class MeasuredPart:
     """What was found of a part, or of a design. broken : what stopped it; "" where nothing did."""
 
     held: tuple[Held, ...]
@@ -54,7 +54,7 @@ def measure_all(
     estimate: bool,
     workers: int = 1,
     callback: Callback | None = None,
-) -> dict[str, Measured]:
+) -> dict[str, MeasuredPart]:
     """What all rungs of the designs say, by the designs' names; each from the lowest rung on.
 
     estimate : whether tolerances are wanted.
@@ -67,7 +67,7 @@ def measure_all(
     work = _PartWork(designs, estimate)
     pool = partial(processes if workers > 1 else in_process, workers)
 
-    def done(key: PartKey, result: Measured) -> None:
+    def done(key: PartKey, result: MeasuredPart) -> None:
         if callback is not None:
             callback(*key)
 
@@ -81,7 +81,7 @@ class _PartWork:
 
     designs: Sequence[HeldDesign]
     estimate: bool
-    results: dict[PartKey, Measured] = field(default_factory=dict)
+    results: dict[PartKey, MeasuredPart] = field(default_factory=dict)
 
     @property
     def keys(self) -> list[PartKey]:
@@ -98,25 +98,25 @@ class _PartWork:
         """All can be begun at once."""
         return True
 
-    def submit(self, executor: Executor, key: PartKey) -> Future[Measured]:
+    def submit(self, executor: Executor, key: PartKey) -> Future[MeasuredPart]:
         """Have a part measured."""
         design = next(one for one in self.designs if one.name == key[0])
         return executor.submit(_measure, design, key[1], self.estimate)
 
-    def stopped(self, key: PartKey) -> Measured:
+    def stopped(self, key: PartKey) -> MeasuredPart:
         """The result of a part whose process died."""
-        return Measured((), "its process ended before it was done")
+        return MeasuredPart((), "its process ended before it was done")
 
-    def of(self, design: HeldDesign) -> Measured:
+    def of(self, design: HeldDesign) -> MeasuredPart:
         """All parts of a design as one."""
         found = [self.results[key] for key in ((design.name, part) for part in parts_of(design))]
         held = [one for part in found for one in part.held if one.rung in design.rungs]
         held.sort(key=lambda one: LADDER.index(one.rung))
         broken = [part.broken for part in found if part.broken]
-        return Measured(tuple(held), broken[0] if broken else "")
+        return MeasuredPart(tuple(held), broken[0] if broken else "")
 
 
-def _measure(design: HeldDesign, part: str, estimate: bool) -> Measured:
+def _measure(design: HeldDesign, part: str, estimate: bool) -> MeasuredPart:
     """One part; what stops it is a result, since a rung that held has no answer any more."""
     found: list[Held] = []
     try:
@@ -125,8 +125,8 @@ def _measure(design: HeldDesign, part: str, estimate: bool) -> Measured:
         raise
     except Exception as error:  # whatever a changed tree may raise
         said = " ".join(f"{type(error).__name__}: {error}".split())
-        return Measured(tuple(found), said)
-    return Measured(tuple(found))
+        return MeasuredPart(tuple(found), said)
+    return MeasuredPart(tuple(found))
 
 
 def _found(design: HeldDesign, part: str, estimate: bool) -> Iterator[Held]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from femcheck.continuation.ended import Ended, NoReply
 from femcheck.regression.held import LADDER, Held, Row
-from femcheck.regression.measure import Measured
+from femcheck.regression.measure import MeasuredPart
 
 __all__ = ["Moved", "compare", "lowest", "said"]
 
@@ -38,7 +38,7 @@ class Moved:
         return f"{what} moved by {self.distance:.3g} {held.unit} (tolerance {held.tolerance:.2g})"
 
 
-def compare(design: str, held: Iterable[Held], measured: Measured) -> list[Moved]:
+def compare(design: str, held: Iterable[Held], measured: MeasuredPart) -> list[Moved]:
     """Every row of a design that moved, from the lowest rung on."""
     now = {one.key: one for one in measured.held}
     found: list[Moved] = []

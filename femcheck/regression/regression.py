@@ -25,7 +25,7 @@ from femcheck.regression.baseline import (
 from femcheck.regression.held import LADDER, Held, is_late
 from femcheck.regression.held_design import BUNDLED, HeldDesign, design_digest, find_design
 from femcheck.regression.kept_mesh import check_mesh_file, is_of, make_section, write_section
-from femcheck.regression.measure import Measured, measure_all, parts_of
+from femcheck.regression.measure import MeasuredPart, measure_all, parts_of
 from femcheck.regression.moved import Moved, compare, lowest
 
 __all__ = ["ContradictionError", "Regression", "hold_designs", "regress", "update_baseline"]
@@ -258,7 +258,7 @@ def _have_mesh(design: HeldDesign, *, force: bool) -> None:
         write_section(design.mesh, make_section(design.design), digest)
 
 
-def _wrong(design: HeldDesign, measured: Mapping[str, Measured]) -> list[str]:
+def _wrong(design: HeldDesign, measured: Mapping[str, MeasuredPart]) -> list[str]:
     found = measured[design.name]
     broken = [found.broken] if found.broken else []
     return broken + contradictions(found.held, design.design.actuator.length)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beamopt.storage.input_file import read_text
-from femcheck.report.content import Record, Table, read_record, read_table
+from femcheck.report.content import Record, ReportTable, read_record, read_table
 from femcheck.report.embedding import Download, download
 from femcheck.report.wording import Badge, duration, number
 
@@ -28,9 +28,9 @@ class AccuracyRun:
     folder: Path
     summary: Record
     provenance: Record
-    tips: Table
-    tried: Table
-    timing: Table
+    tips: ReportTable
+    tried: ReportTable
+    timing: ReportTable
     design_text: str
 
     @property
@@ -146,7 +146,7 @@ def _reason(summary: Record) -> str:
     return f"{reason}. Error: {summary.text('estimate_is')}{against}."
 
 
-def _rows(tips: Table) -> Iterator[TipRow]:
+def _rows(tips: ReportTable) -> Iterator[TipRow]:
     pressures, numbers = tips.numbers(*PRESSURES), tips.numbers(*NUMBERS)
     for place, status in enumerate(tips.column("status")):
         cells = (number(value, 4) for value in numbers[place])

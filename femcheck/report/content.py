@@ -16,7 +16,7 @@ from beamopt.base.errors import InputError
 from beamopt.storage.input_file import read_json, read_text
 from beamopt.storage.writing import cell_text
 
-__all__ = ["Record", "Table", "read_record", "read_table"]
+__all__ = ["Record", "ReportTable", "read_record", "read_table"]
 
 PLAIN = {str: "text", bool: "true or false", dict: "a table of keys", list: "a list"}
 
@@ -94,7 +94,7 @@ class Record:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ReportTable:
     """A CSV file with a header.
 
     file : where it is from. header : names of the columns. rows : cells as they stand there.
@@ -142,11 +142,11 @@ class Table:
             raise InputError(self.file, f"line {line}, {name}", cell, "must be a number")
         return value
 
-    def where(self, name: str, value: str) -> Table:
+    def where(self, name: str, value: str) -> ReportTable:
         """The rows that hold `value` in a column."""
         kept = [keep == value for keep in self.column(name)]
         rows = tuple(row for row, keep in zip(self.rows, kept, strict=True) if keep)
-        return Table(self.file, self.header, rows, self.text)
+        return ReportTable(self.file, self.header, rows, self.text)
 
 
 def read_record(path: Path) -> Record:
@@ -159,7 +159,7 @@ def read_record(path: Path) -> Record:
     return Record(path, read_json(path))
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path) -> ReportTable:
     """A CSV file.
 
     Raises
@@ -178,4 +178,4 @@ def read_table(path: Path) -> Table:
         if len(row) != len(rows[0]):
             said = f"must hold {len(rows[0])} cells as the header does (is the file whole?)"
             raise InputError(path, f"line {line}", len(row), said)
-    return Table(path, rows[0], tuple(rows[1:]), text)
+    return ReportTable(path, rows[0], tuple(rows[1:]), text)

@@ -14,11 +14,11 @@ from femcheck.report.run_view import RunView, view_of
 from femcheck.report.solid_run import SolidRun
 from femcheck.report.wording import Badge, badge_of, duration, number, per_cent
 
-__all__ = ["DesignView", "Line", "design_views"]
+__all__ = ["DesignView", "RunLine", "design_views"]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class RunLine:
     """A run in the summary. anchor : where the page has more. cells : as its columns."""
 
     name: str
@@ -43,7 +43,7 @@ class DesignView:
     searches: tuple[SearchView, ...]
     runs: tuple[RunView, ...]
     answers: tuple[AccuracyView, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[RunLine, ...]
 
 
 def design_views(
@@ -117,12 +117,12 @@ def _facts(run: SolidRun) -> Iterator[tuple[str, str]]:
             yield key, str(design.notes[key])
 
 
-def _line(run: SolidRun, anchor: str) -> Line:
+def _line(run: SolidRun, anchor: str) -> RunLine:
     summary = run.summary
     box = (
         f"{number(summary.number('stable_box_kpa'))} kPa" if summary.has("stable_box_kpa") else "–"
     )
-    return Line(
+    return RunLine(
         run.subject.name,
         anchor,
         "prediction" if run.is_prediction else "implementation",
@@ -138,8 +138,8 @@ def _line(run: SolidRun, anchor: str) -> Line:
     )
 
 
-def _accuracy_line(run: AccuracyRun, anchor: str) -> Line:
+def _accuracy_line(run: AccuracyRun, anchor: str) -> RunLine:
     summary = run.summary
     law, asked = summary.text("law"), f"{number(summary.number('accuracy_mm'))} mm"
     cells = (law, asked, "–", "–", "–", duration(run.seconds))
-    return Line(run.name, anchor, "to an accuracy", run.badge, cells)
+    return RunLine(run.name, anchor, "to an accuracy", run.badge, cells)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup
 
 from beamopt.plot.style import figure_bytes
-from femcheck.report.content import Table
+from femcheck.report.content import ReportTable
 from femcheck.report.saved_figure import SavedFigure, shape_of
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def picture(figure: SavedFigure, name: str, caption: str) -> Picture:
     return Picture(name, caption, _link("image/svg+xml", figure.svg), figure.ratio > WIDE)
 
 
-def download(table: Table, name: str) -> Download:
+def download(table: ReportTable, name: str) -> Download:
     """A table as it stood in its folder."""
     size = len(table.text.encode("utf-8"))
     said = f"{size / 1000:.0f} kB" if size >= 1000 else f"{size} bytes"

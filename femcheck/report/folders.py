@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from beamopt.base.errors import InputError
 
-__all__ = ["Folder", "Kind", "find_folders"]
+__all__ = ["ContentKind", "Folder", "find_folders"]
 
 
-class Kind(Enum):
+class ContentKind(Enum):
     """What a folder holds; the value is the text shown to people."""
 
     SOLID = "check or prediction"
@@ -24,7 +24,7 @@ class Kind(Enum):
 class Folder(NamedTuple):
     """A folder of results."""
 
-    kind: Kind
+    kind: ContentKind
     path: Path
 
 
@@ -62,15 +62,15 @@ def _folders(path: Path) -> Iterator[Folder]:
                 yield Folder(kind, inner)
 
 
-def _kind(path: Path) -> Kind | None:
+def _kind(path: Path) -> ContentKind | None:
     if not path.is_dir():
         return None
     if (path / "check.json").exists():
-        return Kind.SOLID
+        return ContentKind.SOLID
     if (path / "tried.csv").exists() and (path / "summary.json").exists():
-        return Kind.ACCURACY
+        return ContentKind.ACCURACY
     if (path / "scene.toml").exists() and (path / "summary.json").exists():
-        return Kind.SEARCH
+        return ContentKind.SEARCH
     if (path / "provenance.json").exists() and any(path.glob("*.svg")):
-        return Kind.FIGURES
+        return ContentKind.FIGURES
     return None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from beamopt.storage.input_file import read_text
 from beamopt.storage.result_folder import design_file
-from femcheck.report.content import Record, Table, read_record, read_table
+from femcheck.report.content import Record, ReportTable, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
 
 __all__ = ["FigureRun", "SearchRun", "read_figure_run", "read_search_run"]
@@ -26,7 +26,7 @@ class SearchRun:
     folder: Path
     summary: Record
     provenance: Record
-    tables: tuple[Table, ...]
+    tables: tuple[ReportTable, ...]
     figures: tuple[SavedFigure, ...]
     design_text: str
 
@@ -54,7 +54,7 @@ class FigureRun:
 
     folder: Path
     provenance: Record
-    tables: tuple[Table, ...]
+    tables: tuple[ReportTable, ...]
     figures: tuple[SavedFigure, ...]
     reading: str
 
@@ -103,7 +103,7 @@ def read_figure_run(folder: Path) -> FigureRun:
     )
 
 
-def _tables(folder: Path) -> tuple[Table, ...]:
+def _tables(folder: Path) -> tuple[ReportTable, ...]:
     """Its tables but for those that a person wrote, which may hold comments and gaps."""
     files = sorted(folder.glob("*.csv"))
     return tuple(read_table(file) for file in files if not file.name.startswith(OF_PEOPLE))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
-from femcheck.report.shapes import Shapes
+from femcheck.report.shapes import RunShapes
 from femcheck.report.surface import PARTS
 
 __all__ = ["Scale", "pack", "stretch_range", "unpack_positions"]
@@ -45,14 +45,14 @@ def unpack_positions(text: str, scale: Scale) -> FloatArray:
     return np.asarray(np.array(scale.offset) + scale.step * steps)
 
 
-def stretch_range(shapes: Shapes) -> tuple[float, float]:
+def stretch_range(shapes: RunShapes) -> tuple[float, float]:
     """Smallest and largest stretch of all shapes: the ends of the colour scale."""
     low = min(float(shape.stretch.min()) for shape in shapes.shapes)
     high = max(float(shape.stretch.max()) for shape in shapes.shapes)
     return (low, high) if high - low > 1e-6 else (low, low + 0.01)
 
 
-def pack(shapes: Shapes) -> dict[str, Any]:
+def pack(shapes: RunShapes) -> dict[str, Any]:
     """What the viewer needs, as JSON holds it.
 
     Triangles stand part by part, `parts` says how many each has.

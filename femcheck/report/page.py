@@ -17,7 +17,7 @@ from beamopt.plot.style import SUPPLY_COLOURS
 from femcheck.report.accuracy_run import AccuracyRun, read_accuracy_run
 from femcheck.report.design_view import design_views
 from femcheck.report.embedding import json_block
-from femcheck.report.folders import Kind, find_folders
+from femcheck.report.folders import ContentKind, find_folders
 from femcheck.report.origins import origin_of
 from femcheck.report.other_runs import FigureRun, SearchRun, read_figure_run, read_search_run
 from femcheck.report.other_views import figures_view
@@ -30,11 +30,11 @@ MARK = '<meta name="generator" content="femcheck report">'
 """Stands in the head of every report, and of no other file."""
 
 Run = SolidRun | AccuracyRun | SearchRun | FigureRun
-READERS: dict[Kind, Callable[[Path], Run]] = {
-    Kind.SOLID: read_solid_run,
-    Kind.ACCURACY: read_accuracy_run,
-    Kind.SEARCH: read_search_run,
-    Kind.FIGURES: read_figure_run,
+READERS: dict[ContentKind, Callable[[Path], Run]] = {
+    ContentKind.SOLID: read_solid_run,
+    ContentKind.ACCURACY: read_accuracy_run,
+    ContentKind.SEARCH: read_search_run,
+    ContentKind.FIGURES: read_figure_run,
 }
 SCRIPTS = ("viewer.js", "page.js")
 

@@ -19,7 +19,7 @@ from femcheck.report.figures import (
     parity_figure,
 )
 from femcheck.report.packing import pack
-from femcheck.report.shapes import Shapes, read_shapes
+from femcheck.report.shapes import RunShapes, read_shapes
 from femcheck.report.solid_run import Combinations, SolidRun
 from femcheck.report.still import side_view, still_figure
 from femcheck.report.wording import (
@@ -31,7 +31,7 @@ from femcheck.report.wording import (
     pressures_text,
 )
 
-__all__ = ["Model", "Row", "RunView", "view_of"]
+__all__ = ["CombinationRow", "RunView", "ViewerModel", "view_of"]
 
 NO_SHAPES = (
     "No model: the deformed meshes are not in this folder; femcheck run writes them, but they are "
@@ -45,7 +45,7 @@ SAVED_CAPTIONS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class CombinationRow:
     """A combination in the table. ending : its status and where; meaning : of the status."""
 
     pressures: tuple[str, str, str]
@@ -55,7 +55,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class ViewerModel:
     """What turns. data : for the viewer. still : in its place on paper and without WebGL."""
 
     data: Markup
@@ -76,11 +76,11 @@ class RunView:
     advice: str
     notes: tuple[str, ...]
     tiles: tuple[tuple[str, str], ...]
-    model: Model | None
+    model: ViewerModel | None
     no_model: str
     figures: tuple[Picture, ...]
     columns: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[CombinationRow, ...]
     meanings: tuple[tuple[str, str], ...]
     downloads: tuple[Download, ...]
 
@@ -152,7 +152,7 @@ def _tiles(run: SolidRun) -> Iterator[tuple[str, str]]:
         yield "largest stretch", number(float(np.nanmax(found.stretch)))
 
 
-def _model(run: SolidRun, found: Combinations, shapes: Shapes) -> Model:
+def _model(run: SolidRun, found: Combinations, shapes: RunShapes) -> ViewerModel:
     first = _first(found, shapes)
     levels = run.subject.design.pressures
     shape = shapes.shapes[shapes.of[first]]
@@ -171,10 +171,10 @@ def _model(run: SolidRun, found: Combinations, shapes: Shapes) -> Model:
         else "Where a combination has no stable answer, the last stable shape on the way is shown."
     )
     place = (first // 9, first // 3 % 3, first % 3)
-    return Model(json_block(data), tuple(levels), place, still, note)
+    return ViewerModel(json_block(data), tuple(levels), place, still, note)
 
 
-def _first(found: Combinations, shapes: Shapes) -> int:
+def _first(found: Combinations, shapes: RunShapes) -> int:
     """The combination to begin with: its tip moves most, or without answers it stretches most."""
     own = found.answered & found.loaded & (np.array(shapes.of) >= 0)
     if own.any():
@@ -183,7 +183,7 @@ def _first(found: Combinations, shapes: Shapes) -> int:
     return int(np.argmax(stretches))
 
 
-def _said(found: Combinations, shapes: Shapes, row: int) -> str:
+def _said(found: Combinations, shapes: RunShapes, row: int) -> str:
     """A combination in a sentence."""
     asked = pressures_text(found.pressures[row])
     if found.answered[row]:
@@ -236,7 +236,7 @@ def _columns(run: SolidRun) -> tuple[str, ...]:
     return (*names, "stretch") if run.is_prediction else names
 
 
-def _rows(found: Combinations, predicted: bool) -> Iterator[Row]:
+def _rows(found: Combinations, predicted: bool) -> Iterator[CombinationRow]:
     for row, pressures in enumerate(found.pressures):
         a, b, c = (number(float(value), 4) for value in pressures)
         cells = [
@@ -247,7 +247,7 @@ def _rows(found: Combinations, predicted: bool) -> Iterator[Row]:
         ]
         if predicted:
             cells.append(number(float(found.stretch[row])))
-        yield Row((a, b, c), tuple(cells), found.ending(row), bool(found.answered[row]))
+        yield CombinationRow((a, b, c), tuple(cells), found.ending(row), bool(found.answered[row]))
 
 
 def _fixed(value: Any, digits: int) -> str:

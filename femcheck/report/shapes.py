@@ -18,13 +18,13 @@ from femcheck.prediction.rays import rays_of
 from femcheck.report.solid_run import Combinations, SolidRun
 from femcheck.report.surface import Surface, surface_of
 
-__all__ = ["Shape", "Shapes", "read_shapes"]
+__all__ = ["DeformedSurface", "RunShapes", "read_shapes"]
 
 LINE_POINTS = 33
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class DeformedSurface:
     """One deformed surface.
 
     pressures : (3,) [kPa]. at : (v, 3) vertices [mm]. stretch : (v,).
@@ -38,7 +38,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class Shapes:
+class RunShapes:
     """What there is to see of a run.
 
     shapes : the undeformed one first.
@@ -48,12 +48,12 @@ class Shapes:
     """
 
     surface: Surface
-    shapes: tuple[Shape, ...]
+    shapes: tuple[DeformedSurface, ...]
     of: tuple[int, ...]
     is_last: tuple[bool, ...]
 
 
-def read_shapes(run: SolidRun) -> Shapes | None:
+def read_shapes(run: SolidRun) -> RunShapes | None:
     """Read the deformed meshes of a run; None where its folder has none.
 
     Raises
@@ -77,7 +77,7 @@ def read_shapes(run: SolidRun) -> Shapes | None:
     of = [places[files[row][0]] if row in files else -1 for row in range(NODES)]
     of = [place if loaded else 0 for place, loaded in zip(of, found.loaded, strict=True)]
     is_last = [row in files and not answered for row, answered in enumerate(found.answered)]
-    return Shapes(reader.surface, tuple(shapes), tuple(of), tuple(is_last))
+    return RunShapes(reader.surface, tuple(shapes), tuple(of), tuple(is_last))
 
 
 def _files(run: SolidRun, found: Combinations, folder: Path) -> dict[int, tuple[Path, FloatArray]]:
@@ -129,11 +129,11 @@ class _Reader:
                 raise
             raise InputError(tagged, "tag", None, str(error)) from None
 
-    def undeformed(self) -> Shape:
+    def undeformed(self) -> DeformedSurface:
         """The surface at rest."""
         return self._shape(self.surface.rest, np.zeros(3))
 
-    def shape(self, file: Path, pressures: FloatArray) -> Shape:
+    def shape(self, file: Path, pressures: FloatArray) -> DeformedSurface:
         """The surface in a file."""
         rest, moved, wedges = _deformed(file)
         same = rest.shape == self.rest.shape and np.array_equal(wedges, self.wedges)
@@ -141,12 +141,12 @@ class _Reader:
             raise InputError(file, "", None, "is of another mesh than the files beside it")
         return self._shape((rest + moved)[self.surface.nodes], pressures)
 
-    def _shape(self, at: FloatArray, pressures: FloatArray) -> Shape:
+    def _shape(self, at: FloatArray, pressures: FloatArray) -> DeformedSurface:
         strains = self.subject.response.strains(pressures[None])
         stations = np.linspace(0, self.subject.design.actuator.length, LINE_POINTS)
         centroid = np.append(self.subject.outline.moments.centroid, 0.0)
         line = arc_centreline(strains, stations)[0] + centroid
-        return Shape(pressures, at, self.surface.stretch(at), line)
+        return DeformedSurface(pressures, at, self.surface.stretch(at), line)
 
 
 def _deformed(file: Path) -> tuple[FloatArray, FloatArray, IndexArray]:

@@ -16,7 +16,7 @@ from beamopt.storage.input_file import read_text
 from beamopt.target.workspace import NODES
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import ended_of
-from femcheck.report.content import Record, Table, read_record, read_table
+from femcheck.report.content import Record, ReportTable, read_record, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
 from femcheck.solved.subject import LoadedDesignError, Subject
 
@@ -97,8 +97,8 @@ class SolidRun:
     provenance: Record
     subject: Subject
     combinations: Combinations | None
-    timing: Table
-    tables: tuple[Table, ...]
+    timing: ReportTable
+    tables: tuple[ReportTable, ...]
     figures: tuple[SavedFigure, ...]
     design_text: str
 
@@ -156,7 +156,7 @@ def _subject(folder: Path, name: str) -> Subject:
         raise InputError(file, "", None, str(error)) from None
 
 
-def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinations:
+def _combinations(table: ReportTable, subject: Subject, predicted: bool) -> Combinations:
     if predicted:
         table = table.where("mesh", "standard")
     pressures = table.numbers("p1", "p2", "p3")
@@ -195,7 +195,7 @@ def _combinations(table: Table, subject: Subject, predicted: bool) -> Combinatio
     )
 
 
-def _endings(table: Table) -> tuple[Ended | None, ...]:
+def _endings(table: ReportTable) -> tuple[Ended | None, ...]:
     """Of the column "ended"; an earlier table has texts alone."""
     if "ended" not in table.header:
         return tuple(map(_of_text, table.column("status")))

@@ -9,7 +9,7 @@ import numpy as np
 from beamopt.base.arrays import FloatArray
 from beamopt.plot.style import DESIGN_COLOUR, MATERIAL_COLOUR, new_figure, styled
 from femcheck.report.packing import stretch_range
-from femcheck.report.shapes import Shapes
+from femcheck.report.shapes import RunShapes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +37,7 @@ def side_view(line: FloatArray) -> float:
 
 
 @styled
-def still_figure(shapes: Shapes, shown: int) -> Figure:
+def still_figure(shapes: RunShapes, shown: int) -> Figure:
     """The shape `shown`, coloured by its stretch, in front of the undeformed one; the beam's line.
 
     Drawn from back to front: the triangles are small beside the body.

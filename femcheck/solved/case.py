@@ -14,7 +14,7 @@ from beamopt.base.arrays import FloatArray, IndexArray
 from femcheck.continuation.direct import DirectSolver, SingularMatrixError, direct_solver
 from femcheck.continuation.limits import Budget, Limits
 from femcheck.continuation.load_steps import LoadSteps
-from femcheck.continuation.outcome import Outcome, Statistics, Status
+from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.continuation.trace import PathSteps
 from femcheck.material.fibre import Thread
@@ -124,7 +124,7 @@ class CaseResult:
     volumes : (3,) of the chambers [mm³]. strain_energy : ∫ W dV [mN mm].
     """
 
-    outcome: Outcome
+    outcome: SolidOutcome
     shape: FloatArray | None = None
     volumes: FloatArray | None = None
     strain_energy: float = float("nan")
@@ -192,7 +192,7 @@ def solve_case(case: Case) -> CaseResult:
     )
 
 
-def _is_beyond_law(problem: Equilibrium, found: Outcome) -> bool:
+def _is_beyond_law(problem: Equilibrium, found: SolidOutcome) -> bool:
     """Whether an equilibrium was found that is stretched beyond what the law describes."""
     most = problem.law.most_stretch
     if found.state is None or math.isinf(most):
@@ -200,7 +200,7 @@ def _is_beyond_law(problem: Equilibrium, found: Outcome) -> bool:
     return problem.largest_stretch(found.state)[0] > most
 
 
-def _followed(shop: Workshop, case: Case, failed: Outcome, budget: Budget) -> Outcome:
+def _followed(shop: Workshop, case: Case, failed: SolidOutcome, budget: Budget) -> SolidOutcome:
     """Where load steps found nothing, or what no law describes: the path from rest."""
     spent = failed.statistics
     load = float(np.abs(case.pressures).max())
@@ -212,8 +212,8 @@ def _followed(shop: Workshop, case: Case, failed: Outcome, budget: Budget) -> Ou
     spent.seconds += path.statistics.seconds
     found = path.stops[0]
     if found is not None:
-        return Outcome(Status.CONVERGED, found.state, 1.0, math.nan, found.unstable, spent)
-    return Outcome(path.status, None, path.critical / load, statistics=spent)
+        return SolidOutcome(Status.CONVERGED, found.state, 1.0, math.nan, found.unstable, spent)
+    return SolidOutcome(path.status, None, path.critical / load, statistics=spent)
 
 
 def rest_slopes(solid: Solid) -> FloatArray | None:
@@ -240,4 +240,4 @@ def rest_slopes(solid: Solid) -> FloatArray | None:
 
 def stopped() -> CaseResult:
     """The result of a case whose process ended under it."""
-    return CaseResult(Outcome(Status.STOPPED, None, statistics=Statistics()))
+    return CaseResult(SolidOutcome(Status.STOPPED, None, statistics=Statistics()))

@@ -6,10 +6,10 @@ from enum import Enum
 
 from femcheck.continuation.outcome import Status
 
-__all__ = ["Ending", "ending_of"]
+__all__ = ["MapEnding", "ending_of"]
 
 
-class Ending(Enum):
+class MapEnding(Enum):
     """How a cell ended; the value is the text shown to people."""
 
     STABLE = "stable equilibrium"
@@ -30,7 +30,7 @@ class Ending(Enum):
     @property
     def has_equilibrium(self) -> bool:
         """Whether there is a stable equilibrium, as far as is known."""
-        return self in (Ending.STABLE, Ending.UNCHECKED)
+        return self in (MapEnding.STABLE, MapEnding.UNCHECKED)
 
     @property
     def is_interrupted(self) -> bool:
@@ -40,16 +40,16 @@ class Ending(Enum):
     @property
     def says_none(self) -> bool:
         """Whether the solver found out that the stable path ends below this pressure."""
-        return self in (Ending.LIMIT_POINT, Ending.BUCKLED)
+        return self in (MapEnding.LIMIT_POINT, MapEnding.BUCKLED)
 
 
-def ending_of(status: Status, unstable: int | None) -> Ending:
+def ending_of(status: Status, unstable: int | None) -> MapEnding:
     """The ending of a case.
 
     unstable : directions in which an equilibrium that was found is unstable; None: not known.
     """
     if status is not Status.CONVERGED:
-        return Ending[status.name]
+        return MapEnding[status.name]
     if unstable is None:
-        return Ending.UNCHECKED
-    return Ending.UNSTABLE if unstable > 0 else Ending.STABLE
+        return MapEnding.UNCHECKED
+    return MapEnding.UNSTABLE if unstable > 0 else MapEnding.STABLE

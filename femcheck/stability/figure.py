@@ -10,8 +10,8 @@ import numpy as np
 
 from beamopt.plot.style import new_figure, styled
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
-from femcheck.stability.found import AxisFound, Row, share_of_cell
+from femcheck.stability.ending import MapEnding
+from femcheck.stability.found import AxisFound, MapRow, share_of_cell
 from femcheck.stability.validity import AGREE, Interval, intervals_of
 
 if TYPE_CHECKING:
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 
 __all__ = ["LOOKS", "height_of", "map_figure", "validity_lines"]
 
-LOOKS: dict[Ending, tuple[str, str, str]] = {
-    Ending.STABLE: ("s", "#d6e8f5", "#202020"),
-    Ending.UNCHECKED: ("?", "#a8c4d8", "#202020"),
-    Ending.UNSTABLE: ("u", "#f0e442", "#202020"),
-    Ending.LIMIT_POINT: ("L", "#d55e00", "#ffffff"),
-    Ending.BUCKLED: ("B", "#7a1f5c", "#ffffff"),
-    Ending.BEYOND_LAW: ("l", "#c8a2c8", "#202020"),
-    Ending.INVERTED: ("I", "#101010", "#ffffff"),
-    Ending.STEP_TOO_SMALL: ("t", "#e69f00", "#202020"),
-    Ending.LINEAR_SOLVER: ("n", "#505050", "#ffffff"),
-    Ending.WORK_LIMIT: ("W", "#808080", "#ffffff"),
-    Ending.TIME_OUT: ("T", "#808080", "#ffffff"),
-    Ending.STOPPED: ("X", "#808080", "#ffffff"),
-    Ending.NO_MESH: ("m", "#ffffff", "#606060"),
-    Ending.NO_PAIR: ("e", "#ffffff", "#606060"),
+LOOKS: dict[MapEnding, tuple[str, str, str]] = {
+    MapEnding.STABLE: ("s", "#d6e8f5", "#202020"),
+    MapEnding.UNCHECKED: ("?", "#a8c4d8", "#202020"),
+    MapEnding.UNSTABLE: ("u", "#f0e442", "#202020"),
+    MapEnding.LIMIT_POINT: ("L", "#d55e00", "#ffffff"),
+    MapEnding.BUCKLED: ("B", "#7a1f5c", "#ffffff"),
+    MapEnding.BEYOND_LAW: ("l", "#c8a2c8", "#202020"),
+    MapEnding.INVERTED: ("I", "#101010", "#ffffff"),
+    MapEnding.STEP_TOO_SMALL: ("t", "#e69f00", "#202020"),
+    MapEnding.LINEAR_SOLVER: ("n", "#505050", "#ffffff"),
+    MapEnding.WORK_LIMIT: ("W", "#808080", "#ffffff"),
+    MapEnding.TIME_OUT: ("T", "#808080", "#ffffff"),
+    MapEnding.STOPPED: ("X", "#808080", "#ffffff"),
+    MapEnding.NO_MESH: ("m", "#ffffff", "#606060"),
+    MapEnding.NO_PAIR: ("e", "#ffffff", "#606060"),
 }
 """Letter, colour, colour of the letter (after Okabe and Ito): what has an equilibrium is pale."""
 
@@ -86,7 +86,7 @@ def _panel(axes: Axes, one: AxisFound) -> None:
         side.set_visible(False)
 
 
-def _cells(axes: Axes, x: int, row: Row) -> None:
+def _cells(axes: Axes, x: int, row: MapRow) -> None:
     """Letter of the status; beside it the difference to the beam, bold where the beam is valid."""
     from matplotlib.patches import Rectangle
 

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from femcheck.stability.axis import Axis, Column
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import CellResult, TraceResult, apart_of
 from femcheck.stability.validity import LOAD
 from femcheck.stability.work import FINER, TRACE, Key, Result
 
-__all__ = ["Agreement", "AxisFound", "Row", "agreement_of", "found_of", "share_of_cell"]
+__all__ = ["AxisFound", "MapRow", "RowAgreement", "agreement_of", "found_of", "share_of_cell"]
 
 NEAR = 0.01  # of the limit: a cell so near to the line may end on either side of it
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class MapRow:
     """One specimen at all pressures of its axis; None where it is not solved yet.
 
     trace : its path. finer : that on the finer mesh. cells : by pressure.
@@ -49,11 +49,11 @@ class AxisFound:
     """A panel with what was found."""
 
     axis: Axis
-    rows: tuple[Row, ...]
+    rows: tuple[MapRow, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
+class RowAgreement:
     """Cells, each solved from rest by itself, against the limit of its row's path.
 
     agree : cells that say what the line says. near : within a hundredth of the line, not judged.
@@ -78,7 +78,7 @@ def found_of(axes: Mapping[str, Axis], results: Mapping[Key, Result]) -> list[Ax
     return found
 
 
-def _row(axis: Axis, number: int, results: Mapping[Key, Result]) -> Row:
+def _row(axis: Axis, number: int, results: Mapping[Key, Result]) -> MapRow:
     def path(kind: int) -> TraceResult | None:
         result = results.get((axis.name, number, kind))
         return result if isinstance(result, TraceResult) else None
@@ -88,10 +88,10 @@ def _row(axis: Axis, number: int, results: Mapping[Key, Result]) -> Row:
         return result if isinstance(result, CellResult) else None
 
     cells = tuple(cell(place) for place in range(len(axis.pressures)))
-    return Row(axis, axis.columns[number], path(TRACE), path(FINER), cells)
+    return MapRow(axis, axis.columns[number], path(TRACE), path(FINER), cells)
 
 
-def share_of_cell(row: Row, cell: CellResult) -> float | None:
+def share_of_cell(row: MapRow, cell: CellResult) -> float | None:
     """Difference to the beam over the beam's displacement; None without an equilibrium."""
     if cell.tip is None or cell.beam is None:
         return None
@@ -100,7 +100,7 @@ def share_of_cell(row: Row, cell: CellResult) -> float | None:
     return float(np.linalg.norm(apart)) if np.isfinite(apart).all() else None
 
 
-def agreement_of(rows: Iterable[Row]) -> Agreement:
+def agreement_of(rows: Iterable[MapRow]) -> RowAgreement:
     """Compare every cell with the line of its row."""
     agree = near = 0
     against: list[str] = []
@@ -121,12 +121,12 @@ def agreement_of(rows: Iterable[Row]) -> Agreement:
             else:
                 against.append(f"{said}, the path {_told(row.trace)}")
             apart = max(apart, _tips_apart(row, row.trace, pressure, cell))
-    return Agreement(agree, near, tuple(against), tuple(neither), apart)
+    return RowAgreement(agree, near, tuple(against), tuple(neither), apart)
 
 
 def _expected(trace: TraceResult, pressure: float) -> bool | None:
     """Whether the path says that there is an equilibrium; None where it does not say."""
-    if trace.ending in (Ending.NO_MESH, Ending.NO_PAIR):
+    if trace.ending in (MapEnding.NO_MESH, MapEnding.NO_PAIR):
         return False
     if trace.critical is None:
         return True if trace.ending.has_equilibrium else None
@@ -137,11 +137,11 @@ def _expected(trace: TraceResult, pressure: float) -> bool | None:
     return False if trace.ending.says_none else None
 
 
-def _says(ending: Ending, of_path: Ending) -> bool | None:
+def _says(ending: MapEnding, of_path: MapEnding) -> bool | None:
     """Whether a cell says that there is an equilibrium; None where it says nothing."""
     if ending.has_equilibrium:
         return True
-    absent = ending in (Ending.NO_MESH, Ending.NO_PAIR) and ending is of_path
+    absent = ending in (MapEnding.NO_MESH, MapEnding.NO_PAIR) and ending is of_path
     return False if ending.says_none or absent else None
 
 
@@ -151,7 +151,7 @@ def _told(trace: TraceResult) -> str:
     return f"ends at {trace.critical:.4g} kPa ({trace.ending.value})"
 
 
-def _tips_apart(row: Row, trace: TraceResult, pressure: float, cell: CellResult) -> float:
+def _tips_apart(row: MapRow, trace: TraceResult, pressure: float, cell: CellResult) -> float:
     """Distance between the tips of cell and path at one pressure, over the displacement."""
     on_path = _at(trace.track, pressure)
     if cell.tip is None or on_path is None or not cell.ending.has_equilibrium:

@@ -12,17 +12,17 @@ from pydantic import TypeAdapter
 from beamopt.base.errors import InputError
 from beamopt.storage.line_journal import LineJournal
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.work import FINER, TRACE, Key, Result
 
-__all__ = ["SCHEMA", "Journal"]
+__all__ = ["SCHEMA", "MapJournal"]
 
 SCHEMA = "femcheck-stability/1"
 NOT_A_NUMBER = None  # JSON has no NaN
 
 
-class Journal:
+class MapJournal:
     """A file with a line that says what it is, and one a task.
 
     Parameters
@@ -83,7 +83,7 @@ def _key(data: dict[str, Any]) -> Key:
 
 def _result(data: dict[str, Any]) -> Result:
     values = {k: v for k, v in data.items() if k not in ("axis", "column", "number", "question")}
-    values["ending"] = Ending[values["ending"]]
+    values["ending"] = MapEnding[values["ending"]]
     if data["number"] in (TRACE, FINER):
         values["snaps"] = tuple(values["snaps"])
         values["track"] = tuple(tuple(_or_nan(one) for one in row) for row in values["track"])

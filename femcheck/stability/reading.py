@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from textwrap import fill
 
-from femcheck.stability.ending import Ending
-from femcheck.stability.found import AxisFound, Row, agreement_of
+from femcheck.stability.ending import MapEnding
+from femcheck.stability.found import AxisFound, MapRow, agreement_of
 from femcheck.stability.solve import TraceResult
 from femcheck.stability.validity import AGREE, intervals_of
 
@@ -46,7 +46,7 @@ def _wrapped(text: str) -> str:
     return text if text.startswith(("|", "-", "#")) else fill(text, WIDTH)
 
 
-def _counts(found: Sequence[AxisFound], rows: Sequence[Row]) -> str:
+def _counts(found: Sequence[AxisFound], rows: Sequence[MapRow]) -> str:
     endings = Counter(cell.ending.value for row in rows for _, cell in row.solved)
     solved, asked = sum(endings.values()), sum(one.axis.count for one in found)
     counts = "; ".join(f"{name} {count}" for name, count in endings.most_common())
@@ -54,7 +54,7 @@ def _counts(found: Sequence[AxisFound], rows: Sequence[Row]) -> str:
     return f"{solved} cases on {len(found)} panels{missing}. They end as: {counts}."
 
 
-def _agreement(rows: Sequence[Row]) -> Iterator[str]:
+def _agreement(rows: Sequence[MapRow]) -> Iterator[str]:
     said = agreement_of(rows)
     judged = said.agree + len(said.against) + len(said.neither)
     yield (
@@ -65,7 +65,7 @@ def _agreement(rows: Sequence[Row]) -> Iterator[str]:
         f"{said.tips:.1g} of the displacement."
     )
     missed = sum(
-        cell.ending is Ending.UNSTABLE and pressure < (row.trace.critical or math.inf)
+        cell.ending is MapEnding.UNSTABLE and pressure < (row.trace.critical or math.inf)
         for row in rows
         for pressure, cell in row.solved
         if row.trace is not None
@@ -81,7 +81,7 @@ def _agreement(rows: Sequence[Row]) -> Iterator[str]:
         yield "\n".join([*(f"- {line}" for line in listed[:MOST]), *more])
 
 
-def _closed_form(rows: Sequence[Row]) -> str:
+def _closed_form(rows: Sequence[MapRow]) -> str:
     """Limits of closed tubes beside the exact ones of long tubes; see `closed_tube_limit`."""
     lines = []
     for row in rows:
@@ -96,7 +96,7 @@ def _closed_form(rows: Sequence[Row]) -> str:
     return _table("specimen | found [kPa] | long tube, closed ends [kPa] | difference", lines)
 
 
-def _finer(rows: Sequence[Row]) -> Iterator[str]:
+def _finer(rows: Sequence[MapRow]) -> Iterator[str]:
     yield (
         "The map is made on coarse meshes. The same specimens on finer ones, their polygons five "
         "times nearer to the arcs and half as many layers more:"

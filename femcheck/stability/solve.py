@@ -20,7 +20,7 @@ from femcheck.prediction.answer import read_off
 from femcheck.prediction.ray_trace import RayTask, trace_ray
 from femcheck.prediction.rays import Ray
 from femcheck.solved.case import Case, CaseResult, Solid, solve_case, workshop
-from femcheck.stability.ending import Ending, ending_of
+from femcheck.stability.ending import MapEnding, ending_of
 from femcheck.stability.specimen import Absent, Specimen, beam_tips, solid_of
 
 __all__ = ["TRACK", "CellResult", "TraceResult", "apart_of", "solve_cell", "trace_row"]
@@ -46,7 +46,7 @@ class CellResult:
     reason : why there is no solid, else "".
     """
 
-    ending: Ending
+    ending: MapEnding
     reached: float = 0.0
     tip: tuple[float, float, float] | None = None
     beam: tuple[float, float, float] | None = None
@@ -70,7 +70,7 @@ class TraceResult:
     triangles, layers, unknowns : of the mesh.
     """
 
-    ending: Ending
+    ending: MapEnding
     critical: float | None = None
     growth: float | None = None
     snaps: tuple[float, ...] = ()

@@ -23,7 +23,7 @@ from femcheck.mesh.gmsh_section import Mesher, MeshFailure
 from femcheck.solid.elements import DEFAULT_ELEMENT, ELEMENTS
 from femcheck.solid.winding import Wound
 from femcheck.solved.case import Solid
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 
 __all__ = ["Absent", "Specimen", "beam_tips", "solid_of"]
 
@@ -82,7 +82,7 @@ class Specimen:
 class Absent:
     """No solid, and why."""
 
-    ending: Ending
+    ending: MapEnding
     reason: str
 
 
@@ -92,12 +92,12 @@ def solid_of(specimen: Specimen) -> Solid | Absent:
     law, element = specimen.law, specimen.element
     if law.volumetric_compliance is not None and not ELEMENTS[element].has_pair:
         said = f"{element} has no stable pair for ν = {law.poisson_ratio:g}"
-        return Absent(Ending.NO_PAIR, said)
+        return Absent(MapEnding.NO_PAIR, said)
     grid = PolarGrid(inner_radius=specimen.inner_radius, outer_radius=specimen.outer_radius)
     outline = build_outline(grid, list(specimen.shapes), RULES, specimen.sagitta)
     section = Mesher().mesh(outline, SectionSizes(factor=specimen.size))
     if isinstance(section, MeshFailure):
-        return Absent(Ending.NO_MESH, str(section))
+        return Absent(MapEnding.NO_MESH, str(section))
     heights = stations(specimen.length, specimen.layers, specimen.grading)
     wound = None if specimen.thread is None else (Wound.CHAMBERS, specimen.thread)
     return Solid("specimen", section, heights, element, law, wound=wound)

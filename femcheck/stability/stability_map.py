@@ -20,7 +20,7 @@ from femcheck.solved.folder import PACKAGES
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
-from femcheck.stability.journal import Journal
+from femcheck.stability.journal import MapJournal
 from femcheck.stability.reading import reading
 from femcheck.stability.tables import tables_of, timing_csv
 from femcheck.stability.work import Key, MapWork, Result
@@ -66,7 +66,7 @@ def run_map(
     InputError : `out` holds something else, or the map of other specimens.
     """
     with claimed(out, KIND, resume=resume):
-        journal = Journal(out / JOURNAL, axes)
+        journal = MapJournal(out / JOURNAL, axes)
         clear_leftovers(out, (JOURNAL, *NAMES))
         made = _solve(out, journal, axes, wanted, workers, progress, pool)
         return _write(out, axes, journal.results, made, figures)
@@ -74,7 +74,7 @@ def run_map(
 
 def _solve(
     out: Path,
-    journal: Journal,
+    journal: MapJournal,
     axes: Mapping[str, Axis],
     wanted: Collection[str] | None,
     workers: int,
@@ -113,7 +113,7 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
     if path.is_file() and path.stat().st_size == 0:  # a journal would begin in it
         raise InputError(path, "", None, "is empty: there is no map to draw again")
     with claimed(out, KIND, resume=True):
-        journal = Journal(path, axes)
+        journal = MapJournal(path, axes)
         if not journal.results:
             raise InputError(path, "", None, f"holds nothing of {', '.join(axes)}")
         computed = _computed_before(out) or provenance(PACKAGES)

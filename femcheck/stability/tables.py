@@ -7,8 +7,8 @@ from math import isfinite
 
 from beamopt.storage.writing import csv_text
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
-from femcheck.stability.found import AxisFound, Row, share_of_cell
+from femcheck.stability.ending import MapEnding
+from femcheck.stability.found import AxisFound, MapRow, share_of_cell
 from femcheck.stability.validity import intervals_of
 from femcheck.stability.work import FINER, TRACE, Key, Result
 
@@ -38,7 +38,7 @@ def tables_of(found: Sequence[AxisFound]) -> dict[str, str]:
     }
 
 
-def _cases(row: Row) -> list[tuple[object, ...]]:
+def _cases(row: MapRow) -> list[tuple[object, ...]]:
     return [
         (
             *(row.axis.name, row.label, pressure, *_both(cell.ending), _short(cell.reached)),
@@ -51,7 +51,7 @@ def _cases(row: Row) -> list[tuple[object, ...]]:
     ]
 
 
-def _limits(row: Row) -> list[tuple[object, ...]]:
+def _limits(row: MapRow) -> list[tuple[object, ...]]:
     """A line, where a path was followed."""
     trace, finer, exact = row.trace, row.finer, row.column.exact
     if trace is None:
@@ -69,7 +69,7 @@ def _limits(row: Row) -> list[tuple[object, ...]]:
     return [line]
 
 
-def _validity(row: Row) -> list[tuple[object, ...]]:
+def _validity(row: MapRow) -> list[tuple[object, ...]]:
     trace = row.trace
     if trace is None or not trace.track:
         return []
@@ -97,7 +97,7 @@ def timing_csv(axes: Mapping[str, Axis], results: Mapping[Key, Result]) -> str:
     return csv_text(TIMES, lines)
 
 
-def _both(ending: Ending) -> tuple[str, str]:
+def _both(ending: MapEnding) -> tuple[str, str]:
     """Cells of "status" and "ended": the text for people, the name for programs."""
     return ending.value, ending.name
 

@@ -7,7 +7,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import CellResult, TraceResult, solve_cell, trace_row
 
 __all__ = ["FINER", "TRACE", "Key", "MapWork", "Result", "keys_of"]
@@ -64,5 +64,5 @@ class MapWork:
     def stopped(self, key: Key) -> Result:
         """The result of a task whose process died."""
         if key[2] in (TRACE, FINER):
-            return TraceResult(Ending.STOPPED, reason="its process died")
-        return CellResult(Ending.STOPPED, reason="its process died")
+            return TraceResult(MapEnding.STOPPED, reason="its process died")
+        return CellResult(MapEnding.STOPPED, reason="its process died")

@@ -29,7 +29,7 @@ import numpy as np
 from beamopt.base.arrays import FloatArray
 from beamopt.comparators.workload import workload_of
 from beamopt.rod.equilibrium import solve_rod
-from beamopt.rod.ladder import Piece
+from beamopt.rod.ladder import RodPiece
 from beamopt.rod.modes import StrainModes
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.scene.scene import load_scene
@@ -195,7 +195,7 @@ def growth(rounds: int) -> Iterator[Measured]:
     parts = (1, 2, 4)
     actions = []
     for count in parts:
-        pieces = tuple(Piece(1 / count, 0.5 * k) for k in range(count))
+        pieces = tuple(RodPiece(1 / count, 0.5 * k) for k in range(count))
         model = replace(load.model, pieces=pieces)
         rod, rest = model.rod(load.section), model.rest(load.section, load.pressures)
         actions.append(partial(solve_rod, rod, rest, SHARE * rod.length, parents_on_grid()))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.pareto.find_front import find_front
-from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.journal import SampleJournal
 from beamopt.rod_map.sampling import METHODS
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.scene import load_scene
@@ -74,7 +74,7 @@ def make_assets(folder: Path) -> Path:
     (folder / "study").mkdir()
     (folder / "study" / "study.json").write_text(json.dumps(STUDY))
     (folder / "map").mkdir()
-    Journal(folder / "map" / "journal.jsonl", {"seed": 0, "methods": list(METHODS)})
+    SampleJournal(folder / "map" / "journal.jsonl", {"seed": 0, "methods": list(METHODS)})
     shutil.copytree(REPORTS / "check", folder / "check")
     shutil.copytree(REPORTS / "prediction", folder / "prediction")
     shutil.copytree(REPORTS / "chart" / "disc-rigid-section", folder / "chart")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamopt.judge.judge import Judge, Status
+from beamopt.judge.judge import Judge, JudgeStatus
 from beamopt.scene.scene import load_scene
 from beamopt.section.feature_points import FeaturePoints
 from tests.validation.check import Check, Row
@@ -108,7 +108,7 @@ def _without_answer(judge: Judge, batch: list[FeaturePoints]) -> int:
     silent = 0
     for tip, verdict in zip(tips, judge(batch), strict=True):
         finite = np.isfinite(tip).all() and np.isfinite([verdict.L, verdict.K, verdict.T]).all()
-        silent += verdict.status is Status.JUDGED and not finite
+        silent += verdict.status is JudgeStatus.JUDGED and not finite
     return silent
 
 

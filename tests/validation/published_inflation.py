@@ -10,7 +10,7 @@ import numpy as np
 from femcheck.continuation.control import ArcControl, Mix
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.newton import Newton
-from femcheck.continuation.outcome import Outcome, Status
+from femcheck.continuation.outcome import SolidOutcome, Status
 from femcheck.continuation.path import Path
 from femcheck.continuation.trace import PathSteps
 from femcheck.material.neo_hookean import NeoHookean
@@ -120,7 +120,7 @@ def load_control_rows(name: str, body: Published, path: Path, limit: float) -> I
     """
     problem, source = body.problem, "no equilibrium above the limit"
 
-    def found(outcome: Outcome) -> float:
+    def found(outcome: SolidOutcome) -> float:
         if outcome.state is None or outcome.negative_eigenvalues:
             return 0.0
         volume = float(problem.volumes(outcome.state)[0])

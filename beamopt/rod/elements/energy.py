@@ -24,7 +24,16 @@ from beamopt.rod.elements.group import (
     tangent_slope,
 )
 
-__all__ = ["Blocks", "Mesh", "State", "add_loads", "assemble", "measure", "potential", "pushes"]
+__all__ = [
+    "Blocks",
+    "ElementState",
+    "Mesh",
+    "add_loads",
+    "assemble",
+    "measure",
+    "potential",
+    "pushes",
+]
 
 
 class Mesh(NamedTuple):
@@ -53,7 +62,7 @@ class Mesh(NamedTuple):
     symmetric: bool
 
 
-class State(NamedTuple):
+class ElementState(NamedTuple):
     """Frames R (n + 1, 3, 3), h (n + 1, 3); φ and the wrenches (m, n) of the elements, (n, 6) both.
 
     The wrenches are unknowns of their own on the way; at an equilibrium they are D(ξ − ξ*).
@@ -74,7 +83,7 @@ class Blocks(NamedTuple):
 
 
 @compiled
-def measure(mesh: Mesh, state: State) -> None:
+def measure(mesh: Mesh, state: ElementState) -> None:
     """Bring φ up to date with the frames, on the branch of the logarithm nearest to the old φ."""
     start, R, h, d = np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.empty(3)
     for e in range(mesh.lengths.size):
@@ -98,7 +107,7 @@ def pushes(mesh: Mesh, e: int, phi: FloatArray, out: FloatArray) -> None:
 
 
 @compiled
-def potential(mesh: Mesh, state: State, factor: float) -> float:
+def potential(mesh: Mesh, state: ElementState, factor: float) -> float:
     """Elastic energy less `factor` times the work of the dead forces [mN·mm]; φ up to date."""
     wrench = np.empty(6)
     energy = 0.0
@@ -148,7 +157,9 @@ def geometric(mesh: Mesh, e: int, phi: FloatArray, wrench: FloatArray, out: Floa
 
 
 @compiled
-def assemble(mesh: Mesh, state: State, factor: float, gradient: FloatArray, blocks: Blocks) -> None:
+def assemble(
+    mesh: Mesh, state: ElementState, factor: float, gradient: FloatArray, blocks: Blocks
+) -> None:
     """Gradient (n + 1, 6) and its derivative, with the state's wrenches in the geometric part.
 
     The state's φ has to be up to date. Where loads have a potential, the derivative's symmetric
@@ -199,7 +210,7 @@ def place(whole: FloatArray, symmetric: bool, e: int, blocks: Blocks) -> None:
 
 @compiled
 def add_loads(
-    mesh: Mesh, state: State, factor: float, gradient: FloatArray, blocks: Blocks
+    mesh: Mesh, state: ElementState, factor: float, gradient: FloatArray, blocks: Blocks
 ) -> None:
     """Subtract `factor` times the loads' wrenches and their derivatives.
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from beamopt.base.arrays import FloatArray, IndexArray
-from beamopt.rod.elements.energy import Mesh, State
+from beamopt.rod.elements.energy import ElementState, Mesh
 from beamopt.rod.elements.group import exponential
 from beamopt.rod.law import SectionLaw, cross
 from beamopt.rod.rod import Rod
@@ -78,7 +78,7 @@ def meshed(rod: Rod, elements: int, penalty: float) -> Mesh:
     )
 
 
-def at_rest(rod: Rod, mesh: Mesh) -> State:
+def at_rest(rod: Rod, mesh: Mesh) -> ElementState:
     """The rod without loads: all elements at their rest strains."""
     n = mesh.lengths.size
     R, h = np.empty((n + 1, 3, 3)), np.empty((n + 1, 3))
@@ -89,7 +89,7 @@ def at_rest(rod: Rod, mesh: Mesh) -> State:
         exponential(phi[e], turned, moved)
         start = R[e] @ mesh.kinks[e]
         R[e + 1], h[e + 1] = start @ turned, h[e] + start @ moved
-    return State(R, h, phi, np.zeros((n, 6)))
+    return ElementState(R, h, phi, np.zeros((n, 6)))
 
 
 def _natural_bending(rod: Rod) -> float:

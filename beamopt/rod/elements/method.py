@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamopt.base.arrays import FloatArray, IndexArray
-from beamopt.rod.elements.energy import Mesh, State
+from beamopt.rod.elements.energy import ElementState, Mesh
 from beamopt.rod.elements.group import exponential, logarithm
 from beamopt.rod.elements.mesh import at_rest, meshed
-from beamopt.rod.elements.newton import Target, workspace
+from beamopt.rod.elements.newton import HeldTip, workspace
 from beamopt.rod.elements.path import Lead, Reached, attempt, fault, follow, is_far
 from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
@@ -79,7 +79,7 @@ class Elements:
         owner = _owners(rod, mesh)
         blocks = workspace(mesh.lengths.size + 1)
         reached: list[Reached] = []
-        before: State | None = None
+        before: ElementState | None = None
         for strains in rest:
             deadline = time.thread_time() + self.seconds
             case = mesh._replace(rest=np.ascontiguousarray(strains[owner], dtype=np.float64))
@@ -109,14 +109,14 @@ def _owners(rod: Rod, mesh: Mesh) -> IndexArray:
     return np.asarray(np.searchsorted(ends, middles), dtype=np.int64)
 
 
-def _unloaded(start: State) -> Reached:
+def _unloaded(start: ElementState) -> Reached:
     status = fault(start)
     if status is None or status is RodStatus.UNRESOLVED:  # an arc is exact however far it turns
         status = RodStatus.CONVERGED
     return Reached(status, start, float(status is RodStatus.CONVERGED), 0)
 
 
-def _lead(rod: Rod, start: State) -> Lead:
+def _lead(rod: Rod, start: ElementState) -> Lead:
     """The tip's way from where it is without loads to where it is held, even and straight."""
     position, rotation = rod.tip.position, rod.tip.rotation
     R, h = start.R[-1], start.h[-1]
@@ -125,10 +125,10 @@ def _lead(rod: Rod, start: State) -> Lead:
     if rotation is not None:
         logarithm(np.ascontiguousarray(R.T @ rotation), np.zeros(3), turn)
 
-    def lead(factor: float) -> Target:
+    def lead(factor: float) -> HeldTip:
         turned = np.empty((3, 3))
         exponential(factor * turn, turned, np.empty(3))
-        return Target(R @ turned, h + factor * way)
+        return HeldTip(R @ turned, h + factor * way)
 
     return lead
 

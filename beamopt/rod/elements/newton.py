@@ -18,8 +18,8 @@ from beamopt.base.compiled import compiled
 from beamopt.rod.elements.blocks import constrain, eliminate, substitute
 from beamopt.rod.elements.energy import (
     Blocks,
+    ElementState,
     Mesh,
-    State,
     assemble,
     measure,
     pushes,
@@ -27,7 +27,7 @@ from beamopt.rod.elements.energy import (
 )
 from beamopt.rod.elements.group import exponential, logarithm, multiply, multiply_back
 
-__all__ = ["Target", "equilibrate", "tangent", "workspace"]
+__all__ = ["HeldTip", "equilibrate", "tangent", "workspace"]
 
 MOST_ITERATIONS = 30
 LARGEST_TURN = 1.0  # rad of a node in one iteration; longer steps are shortened
@@ -35,7 +35,7 @@ SMALLEST_STEP = 1e-8  # rad and lengths of the rod: the next step would be about
 NOISE = 1e-6  # a step below it that is no smaller than the one before is rounding
 
 
-class Target(NamedTuple):
+class HeldTip(NamedTuple):
     """Where the tip is held: R (3, 3), h (3,) [mm]; read only as far as the mesh holds it."""
 
     R: FloatArray
@@ -49,7 +49,7 @@ def workspace(nodes: int) -> Blocks:
 
 
 @compiled
-def missing(mesh: Mesh, state: State, target: Target) -> FloatArray:
+def missing(mesh: Mesh, state: ElementState, target: HeldTip) -> FloatArray:
     """Increments (2, 6) of the base and of the tip that lack to where they are held."""
     values = np.zeros((2, 6))
     last = state.h.shape[0] - 1
@@ -68,7 +68,7 @@ def missing(mesh: Mesh, state: State, target: Target) -> FloatArray:
 
 
 @compiled
-def move(mesh: Mesh, state: State, x: FloatArray, target: Target, whole: bool) -> None:
+def move(mesh: Mesh, state: ElementState, x: FloatArray, target: HeldTip, whole: bool) -> None:
     """Frames g_i ← g_i exp(x_i); after a whole step what is held is exactly where it should be."""
     R, h, turned = np.empty((3, 3)), np.empty(3), np.empty((3, 3))
     last = state.h.shape[0] - 1
@@ -90,7 +90,7 @@ def move(mesh: Mesh, state: State, x: FloatArray, target: Target, whole: bool) -
 
 
 @compiled
-def predict_wrenches(mesh: Mesh, state: State, x: FloatArray) -> None:
+def predict_wrenches(mesh: Mesh, state: ElementState, x: FloatArray) -> None:
     """Set wrenches to what the strains' linear change along x would make them."""
     slope, phi = np.empty((6, 12)), np.empty(6)
     for e in range(mesh.lengths.size):
@@ -104,7 +104,7 @@ def predict_wrenches(mesh: Mesh, state: State, x: FloatArray) -> None:
 
 @compiled
 def equilibrate(
-    mesh: Mesh, state: State, factor: float, target: Target, blocks: Blocks
+    mesh: Mesh, state: ElementState, factor: float, target: HeldTip, blocks: Blocks
 ) -> tuple[bool, int, int]:
     """Move `state` to an equilibrium at `factor` times the loads.
 
@@ -149,7 +149,7 @@ def equilibrate(
 
 @compiled
 def tangent(
-    mesh: Mesh, state: State, factor: float, values: FloatArray, blocks: Blocks
+    mesh: Mesh, state: ElementState, factor: float, values: FloatArray, blocks: Blocks
 ) -> FloatArray:
     """Increments (n + 1, 6) by the loads' share at an equilibrium, with its tangent's factors.
 

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from beamopt.rod.elements.blocks import substitute
-from beamopt.rod.elements.energy import Blocks, Mesh, State, potential
-from beamopt.rod.elements.newton import Target, equilibrate, tangent
+from beamopt.rod.elements.energy import Blocks, ElementState, Mesh, potential
+from beamopt.rod.elements.newton import HeldTip, equilibrate, tangent
 from beamopt.rod.status import RodStatus
 
 __all__ = ["Lead", "Reached", "attempt", "copied", "fault", "follow", "is_far"]
 
-Lead = Callable[[float], Target]
+Lead = Callable[[float], HeldTip]
 """Where the tip is held at a share of the loads."""
 
 SMALLEST_STEP = 2.0**-12  # of the loads; what a critical load is located to
@@ -34,7 +34,7 @@ class Reached(NamedTuple):
     """How far a path came: the last stable equilibrium, and its share of the loads."""
 
     status: RodStatus
-    state: State
+    state: ElementState
     factor: float
     iterations: int
 
@@ -43,16 +43,18 @@ class Trial(NamedTuple):
     """An attempt at an equilibrium: CONVERGED, BUCKLED, a `fault`, or DIVERGED for all else."""
 
     status: RodStatus
-    state: State
+    state: ElementState
     iterations: int
 
 
-def copied(state: State) -> State:
+def copied(state: ElementState) -> ElementState:
     """Arrays of its own."""
-    return State(*(part.copy() for part in state))
+    return ElementState(*(part.copy() for part in state))
 
 
-def attempt(mesh: Mesh, start: State, factor: float, target: Target, blocks: Blocks) -> Trial:
+def attempt(
+    mesh: Mesh, start: ElementState, factor: float, target: HeldTip, blocks: Blocks
+) -> Trial:
     """One run of Newton's method, judged: a stable equilibrium below `start`, near it, or none.
 
     Without a potential only divergence is seen, where the tangent's determinant changes its sign:
@@ -72,7 +74,7 @@ def attempt(mesh: Mesh, start: State, factor: float, target: Target, blocks: Blo
 
 def follow(
     mesh: Mesh,
-    start: State,
+    start: ElementState,
     lead: Lead,
     blocks: Blocks,
     most_iterations: float = np.inf,
@@ -105,7 +107,7 @@ def follow(
     return Reached(RodStatus.CONVERGED, state, 1.0, iterations)
 
 
-def fault(state: State) -> RodStatus | None:
+def fault(state: ElementState) -> RodStatus | None:
     """What is wrong with a shape: no numbers, an element with v3 ≤ 0 or more than a full turn."""
     if not np.all(np.isfinite(state.phi)):
         return RodStatus.DIVERGED
@@ -116,14 +118,14 @@ def fault(state: State) -> RodStatus | None:
     return None
 
 
-def is_far(mesh: Mesh, a: State, b: State) -> bool:
+def is_far(mesh: Mesh, a: ElementState, b: ElementState) -> bool:
     """Whether a node turns too much from one shape to the other for one step between them."""
     largest = LARGEST_TURN_HELD if mesh.held[1].any() else LARGEST_TURN
     cosine = (np.einsum("nij,nij->n", a.R, b.R).min() - 1) / 2
     return not cosine > np.cos(largest)
 
 
-def _rises(mesh: Mesh, start: State, state: State, factor: float) -> bool:
+def _rises(mesh: Mesh, start: ElementState, state: ElementState, factor: float) -> bool:
     """Whether dead forces' potential is higher than where the iteration began.
 
     A minimum in whose basin `start` lies is lower. Moments, and a tip that is led, do work besides.
@@ -137,8 +139,8 @@ def _rises(mesh: Mesh, start: State, state: State, factor: float) -> bool:
 
 def _reason(
     mesh: Mesh,
-    start: State,
-    state: State,
+    start: ElementState,
+    state: ElementState,
     factor: float,
     last: RodStatus,
     lead: Lead,
@@ -159,7 +161,7 @@ def _reason(
 
 
 def _critical(
-    mesh: Mesh, state: State, factor: float, lead: Lead, blocks: Blocks
+    mesh: Mesh, state: ElementState, factor: float, lead: Lead, blocks: Blocks
 ) -> tuple[float, float]:
     """The tangent's smallest eigenvalue [mN·mm]; cos² between its mode and the path's direction.
 

@@ -16,7 +16,7 @@ from beamopt.bound.response import response_bound
 from beamopt.bound.ring import RingMoments
 from beamopt.bound.ring_bound import ring_bound
 from beamopt.bound.wanted import Wanted
-from beamopt.bound.work import ROUND, Work
+from beamopt.bound.work import ROUND, WorkLeft
 from beamopt.cli import progress
 from beamopt.cli.application import run
 from beamopt.scene.scene import load_scene
@@ -36,7 +36,7 @@ def test_less_work_proves_less_and_never_too_much() -> None:
     best = response_bound(asked)
     found = []
     for most in (1.0, 1e4, 1e5, 3e5, 1e8, math.inf):
-        work = Work(most)
+        work = WorkLeft(most)
         found.append(ray_bound(asked, response=best.matrix, work=work))
         assert found[-1].loss <= best.loss * (1 + 1e-12)
         assert work.short == (most < 1e8)
@@ -50,7 +50,7 @@ def test_less_work_proves_less_and_never_too_much() -> None:
 def test_thousands_of_rows_end_within_the_work_allowed() -> None:
     asked = many(400)
     best = response_bound(asked)
-    work = Work(6e5)
+    work = WorkLeft(6e5)
     found = ray_bound(asked, response=best.matrix, work=work)
     assert work.short
     assert work.spent <= 6e5 + 3 * 400 * 2 * ROUND
@@ -61,7 +61,7 @@ def test_thousands_of_rows_end_within_the_work_allowed() -> None:
 def test_the_rays_of_one_pass_share_the_work() -> None:
     """The last ray gets as much as the first, and what one leaves is the others'."""
     asked = many(40)
-    found = ray_bound(asked, work=Work(3 * 40 * 4 * ROUND))
+    found = ray_bound(asked, work=WorkLeft(3 * 40 * 4 * ROUND))
     cells = [ray.cells for ray in found.rays]
     assert min(cells[20:]) >= min(cells[:20]) / 2
 
@@ -93,7 +93,7 @@ def test_a_ray_cut_short_is_bounded_from_below() -> None:
 def test_the_rings_rounds_end_with_the_work() -> None:
     asked = many(50)
     least = response_bound(asked).loss
-    moments, work = RingMoments.of(GRID), Work(1.0)
+    moments, work = RingMoments.of(GRID), WorkLeft(1.0)
     cut = ring_bound(asked, moments, 300.0, least, work)
     whole = ring_bound(asked, moments, 300.0, least)
     assert (cut.rounds, work.short) == (1, True)

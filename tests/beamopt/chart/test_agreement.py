@@ -8,7 +8,7 @@ import pytest
 from beamopt.comparators.collocation import Collocation
 from beamopt.comparators.multiple_shooting import MultipleShooting
 from beamopt.comparators.shooting import Shooting
-from beamopt.comparators.sweep import Stepper
+from beamopt.comparators.sweep import StepRule
 from beamopt.comparators.workload import workload_of
 from beamopt.rod.elements.method import Elements
 from beamopt.rod.equilibrium import solve_rod
@@ -19,9 +19,9 @@ from beamopt.scene.scene import load_scene
 CASES = [0, 13, 26]
 HIGH_ORDER: list[tuple[Method, int]] = [
     (Shooting(), 512),
-    (Shooting(Stepper.MUNTHE_KAAS), 512),
+    (Shooting(StepRule.MUNTHE_KAAS), 512),
     (MultipleShooting(), 512),
-    (MultipleShooting(Stepper.MUNTHE_KAAS), 512),
+    (MultipleShooting(StepRule.MUNTHE_KAAS), 512),
     (Collocation(), 8),
 ]
 

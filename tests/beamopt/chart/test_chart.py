@@ -12,8 +12,8 @@ import pytest
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
-from beamopt.chart.chart import HEADER, Chart, run_chart
-from beamopt.chart.measure import Limits, Measured, measure_rungs, reference_of
+from beamopt.chart.chart import HEADER, RodChart, run_chart
+from beamopt.chart.measure import MeasuredMethod, TimeLimits, measure_rungs, reference_of
 from beamopt.cli.application import run
 from beamopt.comparators.methods import DEFAULT_RESOLUTIONS, Adaptive, all_methods, limited
 from beamopt.comparators.shooting import Shooting
@@ -29,17 +29,17 @@ TWO: tuple[Method, ...] = (
     StrainModes(resolutions=(2, 4)),
     Shooting(resolutions=(8, 16)),
 )
-ONCE = Limits(repeats=1, spent=0.0)
+ONCE = TimeLimits(repeats=1, spent=0.0)
 UNLOADED = ("loads.density=0.0",)
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Chart]:
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RodChart]:
     folder = tmp_path_factory.mktemp("charts") / "gravity"
     return folder, run_chart(load_scene("gravity"), folder, methods=TWO, limits=ONCE)
 
 
-def test_what_a_chart_leaves(made: tuple[Path, Chart]) -> None:
+def test_what_a_chart_leaves(made: tuple[Path, RodChart]) -> None:
     folder, chart = made
     names = {path.name for path in folder.iterdir()}
     assert names == {"chart.csv", "chart.png", "chart.svg", "provenance.json"}
@@ -56,7 +56,7 @@ def test_what_a_chart_leaves(made: tuple[Path, Chart]) -> None:
     assert about["uncertainty_mm"] == chart.uncertainty
 
 
-def test_finer_is_nearer(made: tuple[Path, Chart]) -> None:
+def test_finer_is_nearer(made: tuple[Path, RodChart]) -> None:
     """And the rungs that leave the weight out miss it by more than the scene allows."""
     _, chart = made
     errors = {(row.method, row.resolution): row.error for row in chart.rows}
@@ -127,12 +127,12 @@ def test_time_runs_out(tmp_path: Path) -> None:
 def test_who_is_fastest() -> None:
     found = RodStatus.CONVERGED
     rows = (
-        Measured("a", 1, 0.05, 1.0, 27, 27, found),
-        Measured("b", 2, 1e-4, 2.0, 27, 27, found),
-        Measured("c", 3, 1e-9, 0.5, 26, 27, RodStatus.BUCKLED),
-        Measured("d", 4, np.nan, np.nan, 0, 27, RodStatus.TOO_SLOW),
+        MeasuredMethod("a", 1, 0.05, 1.0, 27, 27, found),
+        MeasuredMethod("b", 2, 1e-4, 2.0, 27, 27, found),
+        MeasuredMethod("c", 3, 1e-9, 0.5, 26, 27, RodStatus.BUCKLED),
+        MeasuredMethod("d", 4, np.nan, np.nan, 0, 27, RodStatus.TOO_SLOW),
     )
-    chart = Chart("x", rows, 0.1, 1e-5)
+    chart = RodChart("x", rows, 0.1, 1e-5)
     assert chart.fastest(0.1) is rows[0]
     assert chart.fastest(1e-3) is rows[1]
     assert chart.fastest(1e-6) is None
@@ -193,7 +193,7 @@ def test_the_command_says_who_is_fastest(
 ) -> None:
     """With two methods in the place of all."""
     monkeypatch.setattr("beamopt.chart.chart.all_methods", lambda parents: TWO)
-    monkeypatch.setattr("beamopt.chart.chart.Limits", lambda: ONCE)
+    monkeypatch.setattr("beamopt.chart.chart.TimeLimits", lambda: ONCE)
     assert run(["chart", "gravity", "--out", str(tmp_path / "chart")]) == 0
     said = capsys.readouterr().out
     assert "gravity: fastest to 0.1 mm" in said

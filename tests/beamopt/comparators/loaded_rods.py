@@ -9,12 +9,12 @@ from beamopt.base.arrays import FloatArray
 from beamopt.comparators.collocation import Collocation
 from beamopt.comparators.multiple_shooting import MultipleShooting
 from beamopt.comparators.shooting import Shooting
-from beamopt.comparators.sweep import Stepper
+from beamopt.comparators.sweep import StepRule
 from beamopt.rod.law import SectionLaw
 from beamopt.rod.rod import Base, LineLoad, PointLoad, Rod, Segment
 from beamopt.rod.solution import Method, RodSolution
 
-RUNGE_KUTTA, MAGNUS = Stepper.RUNGE_KUTTA, Stepper.MUNTHE_KAAS
+RUNGE_KUTTA, MAGNUS = StepRule.RUNGE_KUTTA, StepRule.MUNTHE_KAAS
 METHODS: list[tuple[Method, int]] = [
     (Shooting(RUNGE_KUTTA), 200),
     (Shooting(MAGNUS), 200),

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamopt.base.errors import InputError
-from beamopt.export.bodies import Solid, body_solids, mould_solids
+from beamopt.export.bodies import ExtrudedFace, body_solids, mould_solids
 from beamopt.export.faces import Contour, _clean, section_faces
 from beamopt.export.step import step_text
 from beamopt.export.stl import enclosed_volume, is_watertight, solid_triangles, stl_bytes
@@ -55,7 +55,9 @@ def read_step(text: str, folder: Path) -> dict[str, list[float]]:
     return found
 
 
-def solids_of(design: Design, cap: float = 0.0) -> tuple[tuple[Solid, ...], tuple[Solid, ...]]:
+def solids_of(
+    design: Design, cap: float = 0.0
+) -> tuple[tuple[ExtrudedFace, ...], tuple[ExtrudedFace, ...]]:
     faces = faces_of(design)
     mould = mould_solids(faces, design.grid.build(), LENGTH, SAGITTA)
     return body_solids(faces, LENGTH, cap), mould
@@ -259,13 +261,13 @@ def test_a_volume_that_is_not_the_contours_is_refused(monkeypatch: pytest.Monkey
 
 def test_names_are_written_as_step_has_them() -> None:
     contour = Contour(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
-    text = step_text([Solid("Düse's \\ part", (contour,), 0.0, 1.0)], "größer")
+    text = step_text([ExtrudedFace("Düse's \\ part", (contour,), 0.0, 1.0)], "größer")
     assert r"MANIFOLD_SOLID_BREP('D\X2\00FC\X0\se''s \\ part'" in text
     assert r"PRODUCT('gr\X2\00F6\X0\\X2\00DF\X0\er'" in text
     assert text.isascii()
 
 
-def names(solids: Sequence[Solid]) -> list[str]:
+def names(solids: Sequence[ExtrudedFace]) -> list[str]:
     return [solid.name for solid in solids]
 
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.judge.judge import Judge, Status, judge_all
+from beamopt.judge.judge import Judge, JudgeStatus, judge_all
 from beamopt.rod.arc import arc_tips
 from beamopt.rod.response import linear_response
 from beamopt.scene.scene import load_scene
@@ -74,17 +74,19 @@ def test_a_sealed_section_without_a_chamber_left_is_judged() -> None:
     points = scene.random_points(np.random.default_rng([0]))
     verdict = Judge.of_scene(scene, TARGET)([points])[0]
     still = np.tile([0.0, 0.0, 100.0], (27, 1))
-    assert verdict.status is Status.JUDGED
+    assert verdict.status is JudgeStatus.JUDGED
     assert pytest.approx(loss(still, TARGET.workspace.tips), rel=1e-12) == verdict.L
     air = FeaturePoints([15.0], [0.0], [2])  # with a skin this is two tubes, no longer nothing
-    assert Judge.of_scene(load_scene("sealed-section"), TARGET)([air])[0].status is Status.JUDGED
+    assert (
+        Judge.of_scene(load_scene("sealed-section"), TARGET)([air])[0].status is JudgeStatus.JUDGED
+    )
 
 
 def test_no_feature_point_and_no_material_are_statuses() -> None:
     none = FeaturePoints([], [], [])
     air = FeaturePoints([15.0], [0.0], [2])
     verdicts = JUDGE([none, air])
-    assert [v.status for v in verdicts] == [Status.NO_FEATURE_POINTS, Status.NO_MATERIAL]
+    assert [v.status for v in verdicts] == [JudgeStatus.NO_FEATURE_POINTS, JudgeStatus.NO_MATERIAL]
     assert all(np.inf == v.T for v in verdicts)
 
 

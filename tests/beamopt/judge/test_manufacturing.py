@@ -11,7 +11,7 @@ import pytest
 
 from beamopt.base.errors import InputError
 from beamopt.cli.application import run
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.scene.toml_text import scene_text
 from beamopt.search.algorithm import GeneticAlgorithm
@@ -70,7 +70,7 @@ def test_too_many_chambers_are_rejected() -> None:
         candidates, verdicts, Judge.of_scene(free, free.load_target())(candidates), strict=True
     ):
         if max(scene.design_of(points).section.pieces.chambers) > 2:
-            assert verdict == Verdict(np.inf, np.inf, Status.TOO_MANY_CHAMBERS)
+            assert verdict == Verdict(np.inf, np.inf, JudgeStatus.TOO_MANY_CHAMBERS)
         else:
             assert verdict == plain
     assert len({verdict.status for verdict in verdicts}) == 2
@@ -99,7 +99,7 @@ def test_weighted_rules_add_exactly_what_they_weigh() -> None:
         grams = 1200e-6 * float(section.moments.area) * 100.0  # kg/m³ is 10⁻⁶ g/mm³
         R = 7.5 * beyond + 300 * share + 2.5 * grams
         assert pytest.approx(R, rel=1e-12) == verdict.R
-        assert (verdict.L, verdict.K, verdict.status) == (before.L, before.K, Status.JUDGED)
+        assert (verdict.L, verdict.K, verdict.status) == (before.L, before.K, JudgeStatus.JUDGED)
         assert verdict.T == verdict.L + verdict.K + verdict.R
         assert min(shares) > 0
 
@@ -170,7 +170,7 @@ def test_rejections_are_counted_by_reason(
     last = (out / "history.csv").read_text().splitlines()[-1]
     assert last.endswith(f",{len(reasons)}")
     said = " ".join(capsys.readouterr().out.split())
-    assert f"{counts['TOO_MANY_CHAMBERS']}: {Status.TOO_MANY_CHAMBERS.value}" in said
+    assert f"{counts['TOO_MANY_CHAMBERS']}: {JudgeStatus.TOO_MANY_CHAMBERS.value}" in said
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from beamopt.base.arrays import FloatArray, LabelArray
 from beamopt.judge.judge import Judge
 from beamopt.refine import annealing
-from beamopt.refine.annealing import Schedule, anneal
+from beamopt.refine.annealing import Cooling, anneal
 from beamopt.refine.arc_loss import arc_loss
 from beamopt.refine.fragments import Fragments
 from beamopt.refine.orbits import orbits_of
@@ -19,7 +19,7 @@ from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.symmetry import mirror_symmetry
 from tests.beamopt.refine.cases import judge_of, judged, random_points
 
-SCHEDULE = Schedule(400, 8, 300.0, 3.0)
+SCHEDULE = Cooling(400, 8, 300.0, 3.0)
 
 
 class Spy:
@@ -34,7 +34,7 @@ class Spy:
 
 
 def annealed(
-    judge: Judge, points: FeaturePoints, schedule: Schedule = SCHEDULE, seed: int = 0
+    judge: Judge, points: FeaturePoints, schedule: Cooling = SCHEDULE, seed: int = 0
 ) -> tuple[Judged, Judged, Spy]:
     """The start, what comes out, and what was judged for it."""
     spy, start = Spy(judge), judged(judge, points)
@@ -46,8 +46,8 @@ def annealed(
 
 @given(st.integers(0, 10**9), st.integers(1, 10**6))
 def test_all_flips_are_shared_out(flips: int, walks: int) -> None:
-    schedule = Schedule(flips, walks, 10.0, 1.0)
-    few = Schedule(flips % 1000, 1 + walks % 50, 10.0, 1.0)
+    schedule = Cooling(flips, walks, 10.0, 1.0)
+    few = Cooling(flips % 1000, 1 + walks % 50, 10.0, 1.0)
     assert sum(map(few.flips_of, range(few.walks))) == few.flips
     assert abs(schedule.flips_of(walks // 2) - flips / walks) < 1
 
@@ -58,15 +58,15 @@ def test_no_flip_is_lost_in_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(annealing, "walk", lambda *given: float(drawn.append(len(given[-1])) or 0))
     for flips, walks in ((10, 4), (3, 50)):
         drawn.clear()
-        annealed(judge_of(), random_points(0), Schedule(flips, walks, 10.0, 1.0))
+        annealed(judge_of(), random_points(0), Cooling(flips, walks, 10.0, 1.0))
         assert sum(drawn) == flips
         assert len(drawn) <= walks
 
 
 def test_it_cools_geometrically() -> None:
-    schedule = Schedule(100, 5, 160.0, 10.0)
+    schedule = Cooling(100, 5, 160.0, 10.0)
     np.testing.assert_allclose(list(map(schedule.temperature, range(5))), [160, 80, 40, 20, 10])
-    assert Schedule(100, 1, 160.0, 10.0).temperature(0) == 160
+    assert Cooling(100, 1, 160.0, 10.0).temperature(0) == 160
 
 
 @pytest.mark.parametrize("name", ["random-section", "pairs", "sealed-section"])
@@ -87,7 +87,7 @@ def test_on_an_exact_model_every_chain_is_taken(monkeypatch: pytest.MonkeyPatch)
 
     walk = annealing.walk
     monkeypatch.setattr(annealing, "walk", spied)
-    _, best, spy = annealed(judge, random_points(2), Schedule(400, 8, 1e4, 1e4))
+    _, best, spy = annealed(judge, random_points(2), Cooling(400, 8, 1e4, 1e4))
     assert len(said) == len(spy.seen) == 8
     np.testing.assert_allclose(said, [one.verdict.T for one in spy.seen], rtol=1e-9)
     assert min(one.verdict.T for one in spy.seen) == best.verdict.T
@@ -136,7 +136,7 @@ def test_what_is_truly_better_is_taken_whatever_the_model_said(
     judge = judge_of()
     low, high = two_sections(judge)
     began = scripted(monkeypatch, [low.type, high.type], lambda chain: 0.0)
-    _, best, _ = annealed(judge, high, Schedule(2, 2, 1e-9, 1e-9))
+    _, best, _ = annealed(judge, high, Cooling(2, 2, 1e-9, 1e-9))
     np.testing.assert_array_equal(best.points.type, low.type)
     np.testing.assert_array_equal(began[1], low.type)
 
@@ -145,7 +145,7 @@ def test_a_rise_that_the_model_did_not_see_is_refused(monkeypatch: pytest.Monkey
     judge = judge_of()
     low, high = two_sections(judge)
     began = scripted(monkeypatch, [high.type, high.type], lambda chain: judge([low])[0].T)
-    start, best, _ = annealed(judge, low, Schedule(2, 2, 1e-3, 1e-3))
+    start, best, _ = annealed(judge, low, Cooling(2, 2, 1e-3, 1e-3))
     np.testing.assert_array_equal(began[1], low.type)
     assert best is start
 
@@ -155,7 +155,7 @@ def test_a_rise_that_the_model_saw_is_taken(monkeypatch: pytest.MonkeyPatch) -> 
     judge = judge_of()
     low, high = two_sections(judge)
     began = scripted(monkeypatch, [high.type, high.type], lambda chain: judge([high])[0].T + 1e-6)
-    _, best, _ = annealed(judge, low, Schedule(2, 2, 1e-3, 1e-3))
+    _, best, _ = annealed(judge, low, Cooling(2, 2, 1e-3, 1e-3))
     np.testing.assert_array_equal(began[1], high.type)
     np.testing.assert_array_equal(best.points.type, high.type)
 
@@ -164,14 +164,14 @@ def test_what_can_not_be_judged_is_refused(monkeypatch: pytest.MonkeyPatch) -> N
     judge, points = judge_of(), random_points(0)
     holes = np.ones(25, dtype=np.uint8)
     began = scripted(monkeypatch, [holes, holes], lambda chain: 0.0)
-    start, best, spy = annealed(judge, points, Schedule(2, 2, 1e9, 1e9))
+    start, best, spy = annealed(judge, points, Cooling(2, 2, 1e9, 1e9))
     assert [one.found for one in spy.seen] == [False, False]
     assert best is start
     np.testing.assert_array_equal(began[1], points.type)
 
 
 def test_without_flips_nothing_is_judged() -> None:
-    start, best, spy = annealed(judge_of(), random_points(0), Schedule(0, 5, 10.0, 1.0))
+    start, best, spy = annealed(judge_of(), random_points(0), Cooling(0, 5, 10.0, 1.0))
     assert best is start
     assert spy.seen == []
 

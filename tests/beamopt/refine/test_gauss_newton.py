@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamopt.judge.judge import Judge
-from beamopt.refine.gauss_newton import SLACK, Limits, Linearised, descend, linearised
+from beamopt.refine.gauss_newton import SLACK, DescentLimits, Linearised, descend, linearised
 from beamopt.refine.orbits import orbits_of
 from beamopt.refine.sensitivity import residual_of
 from beamopt.refine.truth import Judged, Truth, View, judged_on
@@ -120,7 +120,10 @@ class Spy:
 
 
 def descended(
-    judge: Judge, start: Judged, limits: Limits, bend: Callable[[Judged], Judged] = lambda one: one
+    judge: Judge,
+    start: Judged,
+    limits: DescentLimits,
+    bend: Callable[[Judged], Judged] = lambda one: one,
 ) -> tuple[Judged, bool, Spy]:
     spy = Spy(judged_on(judge, View.RASTER), bend)
     orbits, rng = orbits_of(len(start.points), None), np.random.default_rng(0)
@@ -136,7 +139,7 @@ def test_never_a_higher_loss_nor_a_k_above_the_limit(seed: int, name: str) -> No
     judge = judge_of(name)
     start = judged(judge, random_points(seed))
     second = start.verdict.K * (1 + 0.1 * (seed % 3))
-    best, _, spy = descended(judge, start, Limits(25, second))
+    best, _, spy = descended(judge, start, DescentLimits(25, second))
     assert best.loss <= start.loss
     assert second >= best.verdict.K
     assert best.verdict == judge([best.points])[0]
@@ -148,7 +151,7 @@ def test_the_limit_of_evaluations_is_kept(most: int) -> None:
     """From a start that goes on for longer every one is used."""
     judge = judge_of()
     start = judged(judge, random_points(1))
-    best, _, spy = descended(judge, start, Limits(most, 1e9))
+    best, _, spy = descended(judge, start, DescentLimits(most, 1e9))
     assert len(spy.seen) == most
     assert best.loss < start.loss or most < 3
 
@@ -156,9 +159,9 @@ def test_the_limit_of_evaluations_is_kept(most: int) -> None:
 def test_good_enough_is_where_it_ends() -> None:
     judge = judge_of()
     start = judged(judge, random_points(1))
-    best, settled, spy = descended(judge, start, Limits(500, 1e9, start.loss))
+    best, settled, spy = descended(judge, start, DescentLimits(500, 1e9, start.loss))
     assert (best, settled, spy.seen) == (start, True, [])
-    best, settled, spy = descended(judge, start, Limits(500, 1e9, start.loss / 2))
+    best, settled, spy = descended(judge, start, DescentLimits(500, 1e9, start.loss / 2))
     assert settled
     assert best is spy.seen[-1]
     assert best.loss <= start.loss / 2
@@ -179,7 +182,7 @@ def test_a_higher_k_is_given_only_where_it_alone_is_in_the_way(slacks: float) ->
     judge = judge_of()
     start, slack = judged(judge, random_points(1)), SLACK * judge.neighbour_weight
     bend = above(start, 2.5 * slack)
-    limits = Limits(60, start.verdict.K + slacks * slack)
+    limits = DescentLimits(60, start.verdict.K + slacks * slack)
     best, _, spy = descended(judge, start, limits, bend)
     if slacks < 2.5:
         assert best is start
@@ -193,7 +196,7 @@ def test_a_k_above_the_limit_is_blocked() -> None:
     judge = judge_of()
     start = judged(judge, random_points(1))
     bend = above(start, 1.0)
-    best, settled, spy = descended(judge, start, Limits(500, start.verdict.K), bend)
+    best, settled, spy = descended(judge, start, DescentLimits(500, start.verdict.K), bend)
     assert best is start
     assert not settled
     assert len(spy.seen) == 13  # all tries of one model
@@ -206,7 +209,7 @@ def test_where_nothing_can_be_judged_the_start_is_left() -> None:
     def lost(one: Judged) -> Judged:
         return judged(judge, FeaturePoints([], [], []))
 
-    best, _, spy = descended(judge, start, Limits(500, 1e9), lost)
+    best, _, spy = descended(judge, start, DescentLimits(500, 1e9), lost)
     assert best is start
     assert len(spy.seen) == 13
 
@@ -215,7 +218,7 @@ def test_steps_are_short() -> None:
     """At most 4 % of the outer radius at a time."""
     judge = judge_of()
     start = judged(judge, random_points(1))
-    _, _, spy = descended(judge, start, Limits(1, 1e9))
+    _, _, spy = descended(judge, start, DescentLimits(1, 1e9))
     moved = spy.seen[0].points
     far = max(np.abs(moved.x - start.points.x).max(), np.abs(moved.y - start.points.y).max())
     assert 0 < far <= 0.04 * judge.grid.outer_radius * (1 + 1e-9)
@@ -230,6 +233,6 @@ def test_a_reachable_target_is_reached(seed: int) -> None:
     judge = replace(judge, aim=wanted)
     x, y = np.stack([points.x, points.y]) + rng.normal(0, 0.3, (2, len(points)))
     start = judged(judge, FeaturePoints(x, y, points.type))
-    best, settled, _ = descended(judge, start, Limits(150, 1e9, 0.05))
+    best, settled, _ = descended(judge, start, DescentLimits(150, 1e9, 0.05))
     assert settled
     assert best.loss <= 0.05 < 1e-3 * start.loss

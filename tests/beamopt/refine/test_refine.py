@@ -13,7 +13,15 @@ from beamopt.judge.judge import Judge
 from beamopt.outline.build import build_outline
 from beamopt.refine import refine as room
 from beamopt.refine.orbits import with_cells
-from beamopt.refine.refine import Refined, RefineStatus, Stage, StageRecord, _Work, improved, refine
+from beamopt.refine.refine import (
+    Refined,
+    RefineStage,
+    RefineStatus,
+    StageRecord,
+    _Work,
+    improved,
+    refine,
+)
 from beamopt.refine.truth import Judged, Truth, View, judged_on
 from beamopt.scene.search_keys import Refining
 from beamopt.section.feature_points import FeaturePoints
@@ -92,7 +100,7 @@ def test_without_points_or_material_nothing_is_judged() -> None:
         assert found.status is RefineStatus.NOT_JUDGED
         assert found.points is points
         assert (found.evaluations, found.flips) == (1, 0)
-        assert [record.stage for record in found.stages] == [Stage.START]
+        assert [record.stage for record in found.stages] == [RefineStage.START]
 
 
 @pytest.mark.parametrize("points", [points_of((15, 0, 0)), points_of((15, 0, 0), (-15, 0, 1))])
@@ -225,7 +233,9 @@ def test_the_search_gets_the_rounds_alone() -> None:
         assert judge([better])[0].ruled_loss <= judge([points])[0].ruled_loss
         assert judge([better])[0].K <= judge([points])[0].K
         stages = refine(judge, points, SHORT, seed=3).stages
-        rounds = [record.evaluations for record in stages if record.stage is not Stage.OUTLINE]
+        rounds = [
+            record.evaluations for record in stages if record.stage is not RefineStage.OUTLINE
+        ]
         assert count == rounds[-1] - 1  # the section before is judged by the search
         if not judge.rules.sealed:
             assert better.digest == refine(judge, points, SHORT, seed=3).points.digest
@@ -267,7 +277,7 @@ def test_sealed_sections_end_on_their_outline() -> None:
     scene, judge = scene_of("sealed-section", *SMALL), judge_of("sealed-section")
     found = refine(judge, random_points(10), SHORT)
     assert found.status is RefineStatus.REFINED
-    assert found.stages[-1].stage is Stage.OUTLINE
+    assert found.stages[-1].stage is RefineStage.OUTLINE
     workspace = scene.design_of(found.points).workspace
     assert pytest.approx(float(judge.aim.loss(workspace.tips)), rel=1e-12) == found.after.L
     outline = build_outline(judge.grid, found.points, judge.rules)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beamopt.judge.judge import Status
+from beamopt.judge.judge import JudgeStatus
 from beamopt.outline.build import build_outline
 from beamopt.refine.truth import View, answers_to, judged_on
 from beamopt.section.feature_points import FeaturePoints
@@ -58,7 +58,7 @@ def test_what_can_not_be_judged(view: View) -> None:
     judge, truth = judge_of(), judged_on(judge_of(), view)
     nothing = truth(FeaturePoints([], [], []))
     assert not nothing.found
-    assert nothing.verdict.status is Status.NO_FEATURE_POINTS
+    assert nothing.verdict.status is JudgeStatus.NO_FEATURE_POINTS
     hollow = truth(random_points(0).with_types(np.ones(25, dtype=np.uint8)))
     assert (hollow.found, hollow.loss) == (False, np.inf)
     assert hollow.aim is judge.aim

@@ -20,15 +20,15 @@ from beamopt.rod.modes import StrainModes
 from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
-from beamopt.rod_map.cases import SLENDERNESSES, Case, Kind, LoadedSection, case_of, sizes_of
-from beamopt.rod_map.journal import Journal
+from beamopt.rod_map.cases import SLENDERNESSES, CaseKind, LoadedSection, RodCase, case_of, sizes_of
+from beamopt.rod_map.journal import SampleJournal
 from beamopt.rod_map.map_report import ANSWERS, NAMES
 from beamopt.rod_map.reading import reading
-from beamopt.rod_map.sampling import Row, Sample, solve_sample
+from beamopt.rod_map.sampling import MethodSample, Sample, solve_sample
 from beamopt.rod_map.stability import JOURNAL, run_stability
 from beamopt.rod_map.summary import commonest, rates_of
 from beamopt.rod_map.truth import compared, true_equilibrium
-from beamopt.rod_map.verdict import Answer, Truth, Verdict, Witness, judged
+from beamopt.rod_map.verdict import MethodAnswer, MethodVerdict, Truth, Witness, judged
 from tests.beamopt.rod.samples import PLANE, plain_law
 from tests.clocks import run_away
 from tests.journals import flipped
@@ -44,44 +44,46 @@ FEW = ("modes", "shooting")
 @pytest.mark.parametrize(
     ("status", "tip", "seconds", "verdict"),
     [
-        (FOUND, TIP + 0.9 * ASIDE, 0.1, Verdict.RIGHT),
-        (FOUND, TIP + 4.9 * ASIDE, 0.1, Verdict.INACCURATE),
-        (FOUND, TIP + 5.1 * ASIDE, 0.1, Verdict.WRONG_BRANCH),
-        (FOUND, TIP, 0.6, Verdict.TOO_SLOW),
-        (RodStatus.TOO_SLOW, NOWHERE, 0.4, Verdict.TOO_SLOW),
-        (LIMIT_POINT, NOWHERE, 0.1, Verdict.REFUSED_WRONGLY),
+        (FOUND, TIP + 0.9 * ASIDE, 0.1, MethodVerdict.RIGHT),
+        (FOUND, TIP + 4.9 * ASIDE, 0.1, MethodVerdict.INACCURATE),
+        (FOUND, TIP + 5.1 * ASIDE, 0.1, MethodVerdict.WRONG_BRANCH),
+        (FOUND, TIP, 0.6, MethodVerdict.TOO_SLOW),
+        (RodStatus.TOO_SLOW, NOWHERE, 0.4, MethodVerdict.TOO_SLOW),
+        (LIMIT_POINT, NOWHERE, 0.1, MethodVerdict.REFUSED_WRONGLY),
     ],
 )
 def test_verdicts_where_there_is_an_equilibrium(
-    status: RodStatus, tip: FloatArray, seconds: float, verdict: Verdict
+    status: RodStatus, tip: FloatArray, seconds: float, verdict: MethodVerdict
 ) -> None:
     truth = Truth(Witness.BOTH, FOUND, TIP, 0.0)
-    assert judged(Answer(status, tip, seconds), truth, 100.0, 0.5)[0] is verdict
+    assert judged(MethodAnswer(status, tip, seconds), truth, 100.0, 0.5)[0] is verdict
 
 
 @pytest.mark.parametrize(
     ("status", "tip", "verdict"),
     [
-        (FOUND, TIP, Verdict.NO_SUCH_TIP),
-        (LIMIT_POINT, NOWHERE, Verdict.REFUSED_RIGHTLY),
-        (RodStatus.DIVERGED, NOWHERE, Verdict.REFUSED_RIGHTLY),
+        (FOUND, TIP, MethodVerdict.NO_SUCH_TIP),
+        (LIMIT_POINT, NOWHERE, MethodVerdict.REFUSED_RIGHTLY),
+        (RodStatus.DIVERGED, NOWHERE, MethodVerdict.REFUSED_RIGHTLY),
     ],
 )
-def test_verdicts_where_there_is_none(status: RodStatus, tip: FloatArray, verdict: Verdict) -> None:
+def test_verdicts_where_there_is_none(
+    status: RodStatus, tip: FloatArray, verdict: MethodVerdict
+) -> None:
     truth = Truth(Witness.BOTH, LIMIT_POINT, NOWHERE, np.nan)
-    assert judged(Answer(status, tip, 0.1), truth, 100.0, 0.5)[0] is verdict
+    assert judged(MethodAnswer(status, tip, 0.1), truth, 100.0, 0.5)[0] is verdict
 
 
 def test_nobody_is_judged_where_nobody_knows() -> None:
     truth = Truth(Witness.NEITHER, FOUND, TIP, 0.2)
-    assert judged(Answer(FOUND, TIP, 9.0), truth, 100.0, 0.5)[0] is Verdict.UNDECIDED
+    assert judged(MethodAnswer(FOUND, TIP, 9.0), truth, 100.0, 0.5)[0] is MethodVerdict.UNDECIDED
 
 
 def test_a_rod_that_is_drawn_out_is_measured_by_its_own_length() -> None:
     far = 10 * TIP
     truth = Truth(Witness.BOTH, FOUND, far, 0.0)
-    verdict, distance = judged(Answer(FOUND, far + 9.0 * ASIDE, 0.1), truth, 100.0, 0.5)
-    assert (verdict, distance) == (Verdict.RIGHT, pytest.approx(0.009))
+    verdict, distance = judged(MethodAnswer(FOUND, far + 9.0 * ASIDE, 0.1), truth, 100.0, 0.5)
+    assert (verdict, distance) == (MethodVerdict.RIGHT, pytest.approx(0.009))
 
 
 def solution(status: RodStatus, tip: FloatArray, factor: float = 1.0) -> RodSolution:
@@ -149,13 +151,13 @@ def test_cases_fill_kinds_and_sizes_evenly() -> None:
     assert set(Counter((one.kind, one.size) for one in cases).values()) == {9}
     assert len({(one.kind, one.size, one.slenderness) for one in cases}) == len(cases)
     assert {one.slenderness for one in cases} == set(SLENDERNESSES)
-    assert (sizes_of(Kind.WEIGHT)[0], sizes_of(Kind.WEIGHT)[-1]) == (0.01, 1e4)
+    assert (sizes_of(CaseKind.WEIGHT)[0], sizes_of(CaseKind.WEIGHT)[-1]) == (0.01, 1e4)
 
 
-@pytest.mark.parametrize("kind", list(Kind))
-def test_sizes_are_dimensionless(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", list(CaseKind))
+def test_sizes_are_dimensionless(kind: CaseKind) -> None:
     """The shorter rod of the same section bends by the same angle, but for shear and stretch."""
-    long, longer = (LoadedSection.of(Case(0, 3, kind, 1.0, s)) for s in (100.0, 200.0))
+    long, longer = (LoadedSection.of(RodCase(0, 3, kind, 1.0, s)) for s in (100.0, 200.0))
     assert longer.rod.length == pytest.approx(2 * long.rod.length)
     turns = [tip_angle(one.rod, one.rest) for one in (long, longer)]
     assert turns[0] == pytest.approx(turns[1], rel=0.05)
@@ -192,7 +194,7 @@ def test_what_a_map_leaves(made: tuple[Path, list[Sample]]) -> None:
     assert [(row["seed"], row["method"]) for row in rows] == [
         (str(index), method) for index in range(8) for method in FEW
     ]
-    assert {row["judged"] for row in rows} == {Verdict.RIGHT.name}
+    assert {row["judged"] for row in rows} == {MethodVerdict.RIGHT.name}
     assert {row["ended"] for row in rows} <= set(RodStatus.__members__)
     truths = list(csv.DictReader((folder / "truth.csv").read_text().splitlines()))
     assert {row["known_by"] for row in truths} == {Witness.BOTH.name}
@@ -220,7 +222,7 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
     folder, samples = made
     there = tmp_path / "map"
     there.mkdir()
-    journal = Journal(there / JOURNAL, {"seed": 0, "methods": list(FEW)})
+    journal = SampleJournal(there / JOURNAL, {"seed": 0, "methods": list(FEW)})
     for sample in samples[2:7]:
         journal.add(sample)
     with journal.path.open("a") as stream:
@@ -237,15 +239,15 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
 
 def test_every_changed_digit_is_noticed(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
     path, asked = tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)}
-    Journal(path, asked).add(made[1][0])
+    SampleJournal(path, asked).add(made[1][0])
     for damaged in flipped(path.read_bytes()):
         path.write_bytes(damaged)
         with pytest.raises(InputError, match=r"line [12]"):
-            Journal(path, asked)
+            SampleJournal(path, asked)
 
 
 def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
-    journal = Journal(tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)})
+    journal = SampleJournal(tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)})
     for sample in made[1][2:7]:
         journal.add(sample)
     before = everything(tmp_path)
@@ -257,7 +259,7 @@ def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: P
 
 def test_another_map_is_not_gone_on_with(tmp_path: Path) -> None:
     path = tmp_path / JOURNAL
-    Journal(path, {"seed": 1, "methods": list(FEW)})
+    SampleJournal(path, {"seed": 1, "methods": list(FEW)})
     with pytest.raises(InputError, match="of another question"):
         run_stability(tmp_path, 1, methods=FEW, resume=True)
     path.write_text("nonsense\n")
@@ -265,16 +267,23 @@ def test_another_map_is_not_gone_on_with(tmp_path: Path) -> None:
         run_stability(tmp_path, 1, methods=FEW, resume=True)
 
 
-def row(verdict: Verdict, seconds: float = 0.1, status: RodStatus = FOUND) -> Row:
-    return Row(case_of(0, 0), "modes", 12, verdict, status, np.nan, seconds)
+def row(verdict: MethodVerdict, seconds: float = 0.1, status: RodStatus = FOUND) -> MethodSample:
+    return MethodSample(case_of(0, 0), "modes", 12, verdict, status, np.nan, seconds)
 
 
 def test_rates_leave_out_what_nobody_knows() -> None:
     worn = RodStatus.STEPS_TOO_SMALL
     rates = rates_of(
         [
-            *(row(Verdict.RIGHT), row(Verdict.REFUSED_RIGHTLY), row(Verdict.NO_SUCH_TIP)),
-            *(row(Verdict.REFUSED_WRONGLY, status=worn), row(Verdict.UNDECIDED, np.nan)),
+            *(
+                row(MethodVerdict.RIGHT),
+                row(MethodVerdict.REFUSED_RIGHTLY),
+                row(MethodVerdict.NO_SUCH_TIP),
+            ),
+            *(
+                row(MethodVerdict.REFUSED_WRONGLY, status=worn),
+                row(MethodVerdict.UNDECIDED, np.nan),
+            ),
         ]
     )
     assert (rates.cases, rates.decided) == (5, 4)
@@ -285,16 +294,17 @@ def test_rates_leave_out_what_nobody_knows() -> None:
 
 def test_a_cell_shows_the_commonest_verdict_and_the_worse_of_equals() -> None:
     right, wrong, open_ = (
-        row(one) for one in (Verdict.RIGHT, Verdict.WRONG_BRANCH, Verdict.UNDECIDED)
+        row(one)
+        for one in (MethodVerdict.RIGHT, MethodVerdict.WRONG_BRANCH, MethodVerdict.UNDECIDED)
     )
-    assert commonest([right, right, wrong]) is Verdict.RIGHT
-    assert commonest([right, wrong]) is Verdict.WRONG_BRANCH
-    assert commonest([right, open_, open_]) is Verdict.RIGHT
-    assert commonest([open_]) is Verdict.UNDECIDED
+    assert commonest([right, right, wrong]) is MethodVerdict.RIGHT
+    assert commonest([right, wrong]) is MethodVerdict.WRONG_BRANCH
+    assert commonest([right, open_, open_]) is MethodVerdict.RIGHT
+    assert commonest([open_]) is MethodVerdict.UNDECIDED
 
 
 def test_every_verdict_has_its_look() -> None:
-    assert list(LOOKS) == [verdict.name for verdict in Verdict]
+    assert list(LOOKS) == [verdict.name for verdict in MethodVerdict]
     letters = [letter for letter, _, _ in LOOKS.values()]
     assert len(set(letters)) == len(letters)
 
@@ -304,7 +314,8 @@ def test_the_reading_has_the_methods_in_their_order(made: tuple[Path, list[Sampl
     _, samples = made
     spoilt = [
         replace(
-            sample, rows=(sample.rows[0], replace(sample.rows[1], verdict=Verdict.WRONG_BRANCH))
+            sample,
+            rows=(sample.rows[0], replace(sample.rows[1], verdict=MethodVerdict.WRONG_BRANCH)),
         )
         for sample in samples
     ]
@@ -318,7 +329,7 @@ def test_where_nobody_knows_nobody_is_asked(monkeypatch: pytest.MonkeyPatch) -> 
     nobody = Truth(Witness.NEITHER, FOUND, NOWHERE, np.nan)
     monkeypatch.setattr("beamopt.rod_map.sampling.true_equilibrium", lambda rod, rest: nobody)
     sample = solve_sample(0, 0, ("adaptive", "modes"))
-    assert [one.verdict for one in sample.rows] == [Verdict.UNDECIDED] * 2
+    assert [one.verdict for one in sample.rows] == [MethodVerdict.UNDECIDED] * 2
     assert [one.status for one in sample.rows] == [RodStatus.SKIPPED] * 2
 
 

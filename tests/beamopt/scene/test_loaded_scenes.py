@@ -12,7 +12,7 @@ import pytest
 
 from beamopt.base.errors import InputError, NoEquilibriumError
 from beamopt.cli.application import run
-from beamopt.judge.judge import Judge, Status
+from beamopt.judge.judge import Judge, JudgeStatus
 from beamopt.outline.saint_venant import outline_saint_venant
 from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
@@ -260,7 +260,7 @@ def test_a_section_that_can_not_carry_itself_is_no_candidate() -> None:
         scene.load_target()
     target = load_scene("upright-column").load_target()
     verdict = Judge.of_scene(scene, target)([scene.random_points(np.random.default_rng([1]))])[0]
-    assert verdict.status is Status.NO_EQUILIBRIUM
+    assert verdict.status is JudgeStatus.NO_EQUILIBRIUM
     assert math.isinf(verdict.L)
 
 

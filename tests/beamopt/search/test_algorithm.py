@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.scene.scene import Scene, load_scene
-from beamopt.search.algorithm import GeneticAlgorithm, Stage
+from beamopt.search.algorithm import CandidateKind, GeneticAlgorithm
 
 
 def made_up(search: GeneticAlgorithm, rng: np.random.Generator) -> list[Verdict]:
@@ -44,7 +44,7 @@ def test_mutants_replace_even_the_best_but_it_is_remembered() -> None:
     rng = np.random.default_rng(2)
     search.tell([Verdict(0.5, 0.0), *made_up(search, rng)[1:]])
     search.tell(made_up(search, rng))
-    assert search.stage is Stage.MUTANTS
+    assert search.stage is CandidateKind.MUTANTS
     assert len(search.ask()) == 20
     record = search.tell(made_up(search, rng))
     assert record is not None
@@ -62,7 +62,7 @@ def test_the_metric_is_the_lowest_L_not_the_lowest_T() -> None:
 
 def test_failures_are_selected_last() -> None:
     search = GeneticAlgorithm(Scene())
-    failed = Verdict(np.inf, np.inf, Status.NO_MATERIAL)
+    failed = Verdict(np.inf, np.inf, JudgeStatus.NO_MATERIAL)
     search.tell([failed] * 10 + [Verdict(1.0, 1.0)] * 10)
     search.tell([Verdict(2.0, 2.0)] * 16)
     record = search.tell([Verdict(3.0, 3.0)] * 2)

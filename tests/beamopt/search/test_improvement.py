@@ -8,7 +8,7 @@ import pytest
 from beamopt.base.processes import in_process
 from beamopt.judge.judge import Judge
 from beamopt.scene.scene import Scene, load_scene
-from beamopt.search.algorithm import GeneticAlgorithm, Stage
+from beamopt.search.algorithm import CandidateKind, GeneticAlgorithm
 from beamopt.search.improvement import LITTLE, Improvement
 from beamopt.search.optimize import optimize
 from tests.validation.resume import content
@@ -35,15 +35,20 @@ def test_the_best_are_improved_after_mutation_and_never_lose_their_place() -> No
     stages = []
     for _ in range(7):
         stages.append(search.stage)
-        if search.stage is Stage.IMPROVED:
+        if search.stage is CandidateKind.IMPROVED:
             before = sorted(one.verdict.T for one in search._population)
         record = search.tell(judge(search.ask()))
-        if stages[-1] is Stage.IMPROVED:
+        if stages[-1] is CandidateKind.IMPROVED:
             assert record is not None
             after = sorted(one.verdict.T for one in record.population)
             assert all(a <= b for a, b in zip(after, before, strict=True))
             assert after[0] < before[0]
-    assert stages[:4] == [Stage.INITIAL, Stage.OFFSPRING, Stage.MUTANTS, Stage.IMPROVED]
+    assert stages[:4] == [
+        CandidateKind.INITIAL,
+        CandidateKind.OFFSPRING,
+        CandidateKind.MUTANTS,
+        CandidateKind.IMPROVED,
+    ]
 
 
 def test_every_section_that_was_judged_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ import pytest
 from beamopt.base.errors import InputError
 from beamopt.scene.scene import Scene, load_scene
 from beamopt.search.algorithm import GeneticAlgorithm
-from beamopt.search.journal import Journal
+from beamopt.search.journal import SearchJournal
 from beamopt.search.optimize import optimize
 from tests.journals import flipped, rewritten, without_digests
 
@@ -89,13 +89,13 @@ def test_every_changed_digit_is_noticed(whole: bytes, tmp_path: Path) -> None:
     assert len(damaged) > 500
     for content in damaged:
         path.write_bytes(content)
-        journal = Journal(path)
+        journal = SearchJournal(path)
         with pytest.raises(InputError) as caught:
             next(journal.replay(search))
         assert (caught.value.where, caught.value.key) == (str(path), "line 2")
         journal.close()
     path.write_bytes(header + first)
-    with Journal(path) as journal:
+    with SearchJournal(path) as journal:
         assert len(next(journal.replay(search))) == 20
 
 
@@ -128,7 +128,7 @@ def test_another_file_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "journal.jsonl"
     path.write_bytes(b"\x00\x01 something else")
     with pytest.raises(InputError, match="is no journal"):
-        Journal(path)
+        SearchJournal(path)
     assert path.read_bytes() == b"\x00\x01 something else"
 
 

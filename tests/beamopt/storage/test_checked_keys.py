@@ -21,7 +21,7 @@ from beamopt.scene.actuator import Actuator, Loading, RodRules
 from beamopt.scene.design import Design, Grid, load_design
 from beamopt.scene.scene import Pressures, Scene, SectionRules, load_scene
 from beamopt.scene.seal_keys import Seal
-from beamopt.storage.checked_keys import Model
+from beamopt.storage.checked_keys import CheckedKeys
 from tests.beamopt.scene.test_design import DRAWN
 
 GRID = Grid(radial=16, angular=48)
@@ -52,11 +52,11 @@ def some_of(strategies: Mapping[str, st.SearchStrategy[Any]]) -> st.SearchStrate
     return st.fixed_dictionaries({}, optional=dict(strategies))
 
 
-def cached(model: type[Model]) -> list[str]:
+def cached(model: type[CheckedKeys]) -> list[str]:
     return [name for name, one in vars(model).items() if isinstance(one, cached_property)]
 
 
-def value(model: Model, name: str) -> object:
+def value(model: CheckedKeys, name: str) -> object:
     try:
         return getattr(model, name)
     except NoEquilibriumError as error:
@@ -79,12 +79,12 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def built(model: Model) -> Model:
+def built(model: CheckedKeys) -> CheckedKeys:
     """The model built from nothing but its keys' values."""
     return type(model).model_validate(model.model_dump(by_alias=True, exclude_none=True))
 
 
-def knows_nothing_old(model: Model, update: dict[str, Any]) -> None:
+def knows_nothing_old(model: CheckedKeys, update: dict[str, Any]) -> None:
     for name in cached(type(model)):
         value(model, name)
     changed = model.model_copy(update=update)
@@ -112,7 +112,7 @@ def test_every_model_that_caches_is_tried_above() -> None:
     for package in (beamopt, femcheck):
         for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
             importlib.import_module(module.name)
-    waiting, found = [Model], set()
+    waiting, found = [CheckedKeys], set()
     while waiting:
         model = waiting.pop()
         waiting += model.__subclasses__()
@@ -131,7 +131,7 @@ COPIES: dict[str, Callable[[Any], Any]] = {
 
 @pytest.mark.parametrize("how", COPIES)
 @pytest.mark.parametrize("model", [DESIGN, SCENE], ids=["design", "scene"])
-def test_a_copy_carries_no_computed_value(model: Model, how: str) -> None:
+def test_a_copy_carries_no_computed_value(model: CheckedKeys, how: str) -> None:
     _ = model.climb  # type: ignore[attr-defined]
     copied = COPIES[how](model)
     assert set(vars(copied)) == set(type(model).model_fields)

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from beamopt.base.errors import InputError
-from beamopt.search.journal import Journal
+from beamopt.search.journal import SearchJournal
 from beamopt.storage.line_journal import LineJournal
 
 
 def test_a_journal_that_is_a_pipe_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "journal.jsonl")
     with pytest.raises(InputError):
-        Journal(tmp_path / "journal.jsonl")
+        SearchJournal(tmp_path / "journal.jsonl")
     with pytest.raises(InputError):
         LineJournal(tmp_path / "journal.jsonl", {"a": 1}, "chart")

@@ -10,7 +10,7 @@ from beamopt.base.errors import InputError
 from beamopt.bound.certificate import BoundStatus
 from beamopt.cli.application import run
 from beamopt.cli.study import refinement_table
-from beamopt.judge.judge import Judge, Status, Verdict
+from beamopt.judge.judge import Judge, JudgeStatus, Verdict
 from beamopt.scene.design import load_design
 from beamopt.search.optimize import optimize
 from beamopt.storage.timing import read_times
@@ -244,12 +244,12 @@ def test_searches_of_nothing_but_air_have_no_design(tmp_path: Path) -> None:
     """Seed 3 begins with air alone, seed 4 does not: one design there is, of each target."""
     keys = ("search.generations=0", "section.feature_points=1", "search.population=2")
     outcomes = run_study(tmp_path / "study", Plan(2, 3, keys))
-    judged = [one.final.status is Status.JUDGED for one in outcomes]
+    judged = [one.final.status is JudgeStatus.JUDGED for one in outcomes]
     assert judged == [False, True] * 12
     assert (tmp_path / "study" / "table.csv").exists()
     for one in outcomes:
         final = tmp_path / "study" / "runs" / one.run.name / "final.json"
-        assert final.exists() == (one.final.status is Status.JUDGED)
+        assert final.exists() == (one.final.status is JudgeStatus.JUDGED)
 
 
 @pytest.fixture(scope="module")

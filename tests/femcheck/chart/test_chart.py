@@ -18,8 +18,8 @@ from beamopt.scene.named import named_design
 from beamopt.storage.line_journal import with_digest
 from femcheck.chart import campaign as run
 from femcheck.chart import lineup
-from femcheck.chart.campaign import Budget, run_chart
-from femcheck.chart.chart import ACCURACIES, HEADER, Chart, Row, seconds_text
+from femcheck.chart.campaign import TimeBudget, run_chart
+from femcheck.chart.chart import ACCURACIES, HEADER, Chart, ChartRow, seconds_text
 from femcheck.chart.figure import chart_figure
 from femcheck.chart.kept import JOURNAL, asked_of, read_chart
 from femcheck.chart.lineup import FAMILIES, line_up
@@ -387,7 +387,7 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
     """
     question = question_of(NEO)
     first = made(seconds=lambda model: 10.0 * model.layers)
-    chart = charted(question, tmp_path / "c", first, budget=Budget(80.0), families=["wedge18"])
+    chart = charted(question, tmp_path / "c", first, budget=TimeBudget(80.0), families=["wedge18"])
     assert [model.layers for model in first.asked] == [3, 4, 6]
     late = [row for row in chart.rows if not np.isfinite(row.measured.seconds)]
     assert len(late) == 3
@@ -401,7 +401,7 @@ def test_models_too_dear_are_left_out_until_there_is_more_time(tmp_path: Path) -
     assert again.uncertainty == chart.uncertainty
     second = made(seconds=lambda model: 10.0 * model.layers)
     whole = charted(
-        question, tmp_path / "c", second, budget=Budget(1e4), resume=True, families=["wedge18"]
+        question, tmp_path / "c", second, budget=TimeBudget(1e4), resume=True, families=["wedge18"]
     )
     assert [(model.layers, model.size) for model in second.asked] == [(8, 2), (12, 2), (4, 0.5)]
     assert all(row.is_whole for row in whole.rows)
@@ -424,7 +424,9 @@ def test_no_model_is_left_out_for_its_time_unless_that_is_asked_for(tmp_path: Pa
 def test_a_correction_is_asked_though_the_finest_is_too_dear(tmp_path: Path) -> None:
     """Stiffer penalties at four layers take what four layers take."""
     solids = made(seconds=lambda model: 10.0 * model.layers)
-    charted(question_of(RIGID), tmp_path / "c", solids, budget=Budget(70.0), families=["wedge18"])
+    charted(
+        question_of(RIGID), tmp_path / "c", solids, budget=TimeBudget(70.0), families=["wedge18"]
+    )
     stiffer = [model for model in solids.asked if model.penalties[0] > 9000]
     assert [model.layers for model in stiffer] == [4]
     assert max(model.layers for model in solids.asked) == 6
@@ -581,7 +583,7 @@ def test_the_sealed_scene_at_one_pressure(tmp_path: Path) -> None:
     question = Question.of("sealed", design, RIGID, np.array([[50.0, 0, 0]]))
     chart = run_chart(question, tmp_path / "c", families=["beam", "raster"], pool=in_process)
     row = chart.cheapest(0.01)
-    assert isinstance(row, Row)
+    assert isinstance(row, ChartRow)
     assert row.measured.family == "beam"
     assert "1 tips" in next(iter(chart.sentences()))
 

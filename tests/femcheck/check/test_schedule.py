@@ -16,7 +16,7 @@ from femcheck.check import schedule as module
 from femcheck.check.schedule import Key, Schedule
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits
-from femcheck.continuation.outcome import Outcome, Status
+from femcheck.continuation.outcome import SolidOutcome, Status
 from femcheck.continuation.pressure_tree import all_nodes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.state import State
@@ -57,10 +57,10 @@ def solved(case: Case) -> CaseResult:
     """A shape that is no sum, so that every other prediction shows; some have no answer."""
     p = case.pressures
     if tuple(p.tolist()) in FAILING:
-        return CaseResult(Outcome(Status.STEP_TOO_SMALL, None))
+        return CaseResult(SolidOutcome(Status.STEP_TOO_SMALL, None))
     shape = np.array([p @ p + p.prod(), p[0] - p[1] * p[2]]) * (1 + len(case.solid.name))
     state = State(np.zeros((1, 3)), p, np.eye(3))
-    return CaseResult(Outcome(Status.CONVERGED, state), shape, np.zeros(3), 1.0)
+    return CaseResult(SolidOutcome(Status.CONVERGED, state), shape, np.zeros(3), 1.0)
 
 
 def stages() -> list[Stage]:
@@ -140,7 +140,7 @@ def test_what_is_taken_over_was_solved_as_it_would_be_now(
 
     def limited(case: Case) -> CaseResult:
         is_late = tuple(case.pressures.tolist()) == late and case.solid.name == "soft"
-        return CaseResult(Outcome(status, None)) if is_late else solved(case)
+        return CaseResult(SolidOutcome(status, None)) if is_late else solved(case)
 
     wanted, _, _ = given(monkeypatch, 1, 0, {})
     before, kept, _ = given(monkeypatch, 1, 0, {}, limited)

@@ -9,7 +9,7 @@ from beamopt.cli.exit_codes import ExitCode, joined
 from femcheck.chart.chart import Chart
 from femcheck.chart.reference import Limit, Reference
 from femcheck.check.checked import Checked
-from femcheck.check.comparison import Comparison, Tips
+from femcheck.check.comparison import Comparison, SolidTips
 from femcheck.check.options import CheckOptions
 from femcheck.cli.verdicts import code_of
 from femcheck.continuation.outcome import Status
@@ -31,7 +31,7 @@ def checked(off: float = 0.0, endings: dict[int, Status] | None = None) -> Check
     for row, status in (endings or {}).items():
         tips[row], statuses[row] = np.nan, status
     nothing = np.zeros(27)
-    solid = Tips("standard", np.inf, tips, tips, tuple(statuses), nothing, nothing.astype(int))
+    solid = SolidTips("standard", np.inf, tips, tips, tuple(statuses), nothing, nothing.astype(int))
     compared = Comparison(SUBJECT, (solid, replace(solid, mesh="coarse")), 2.0, 1.0)
     return Checked(SUBJECT, OPTIONS, None, compared, None, None, (), {})
 

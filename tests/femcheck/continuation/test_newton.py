@@ -9,7 +9,7 @@ from femcheck.continuation.direct import DirectSolver, SingularMatrixError, dire
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.load_steps import LoadSteps
 from femcheck.continuation.newton import Newton
-from femcheck.continuation.outcome import Outcome, Status
+from femcheck.continuation.outcome import SolidOutcome, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.material.rigid_section import RigidSection
 from femcheck.solid.equilibrium import Equilibrium, actuator
@@ -53,7 +53,7 @@ class Watched:
 
 def walk(
     problem: Equilibrium, pressures: FloatArray, settings: LoadSteps, **changes: object
-) -> Outcome:
+) -> SolidOutcome:
     start = rest_state(problem.body), np.zeros(3)
     solver = changes.pop("solver", None) or direct_solver()
     limits = changes.pop("limits", None) or Limits()

@@ -11,7 +11,7 @@ from beamopt.base.arrays import FloatArray
 from beamopt.scene.named import named_design
 from femcheck.check.options import CheckOptions
 from femcheck.continuation.ended import FOUND, Ended
-from femcheck.continuation.outcome import Outcome, Status
+from femcheck.continuation.outcome import SolidOutcome, Status
 from femcheck.mesh.gmsh_section import Mesher, MeshProblem
 from femcheck.models import points
 from femcheck.models.beam import RodOnOutline
@@ -143,7 +143,7 @@ def test_penalties_are_extrapolated(monkeypatch: pytest.MonkeyPatch) -> None:
 
         def __init__(self, c: float) -> None:
             tip = np.array([1.0, 2.0, 3.0]) + np.array([5.0, 0.0, -7.0]) / c
-            self.outcome = Outcome(Status.CONVERGED, State(tip), 1.0)  # type: ignore[arg-type]
+            self.outcome = SolidOutcome(Status.CONVERGED, State(tip), 1.0)  # type: ignore[arg-type]
 
     monkeypatch.setattr(points, "solve_case", lambda case: Result(float(case.solid.name[1:])))
     for penalties in ((2500.0, 10_000.0), (10.0, 30.0)):

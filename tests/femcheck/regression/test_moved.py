@@ -11,7 +11,7 @@ from femcheck.continuation.outcome import Status
 from femcheck.models.reply import Reply
 from femcheck.regression.agreement import contradictions
 from femcheck.regression.held import columns, of_reply
-from femcheck.regression.measure import Measured
+from femcheck.regression.measure import MeasuredPart
 from femcheck.regression.moved import compare, lowest
 from tests.femcheck.regression.small import held
 
@@ -20,8 +20,8 @@ LIMIT, BUCKLED = Ended(Status.LIMIT_POINT, 22.61), Ended(Status.BUCKLED)
 
 def test_a_tip_within_its_tolerance_has_not_moved() -> None:
     before = held({"a": (0.0, 0.0, 60.0)})
-    assert compare("d", [before], Measured((held({"a": (0.06, 0.06, 60.0)}),))) == []
-    (moved,) = compare("d", [before], Measured((held({"a": (0.08, 0.08, 60.0)}),)))
+    assert compare("d", [before], MeasuredPart((held({"a": (0.06, 0.06, 60.0)}),))) == []
+    (moved,) = compare("d", [before], MeasuredPart((held({"a": (0.08, 0.08, 60.0)}),)))
     assert moved.distance == pytest.approx(0.08 * math.sqrt(2))
     assert str(moved) == "beam fine of d: tips at a moved by 0.113 mm (tolerance 0.1)"
 
@@ -38,19 +38,21 @@ def test_a_tip_within_its_tolerance_has_not_moved() -> None:
     ],
 )
 def test_an_equilibrium_that_came_or_went_has_moved(was: object, now: object) -> None:
-    (moved,) = compare("d", [held({"a": was})], Measured((held({"a": now}),)))  # type: ignore[dict-item]
+    (moved,) = compare("d", [held({"a": was})], MeasuredPart((held({"a": now}),)))  # type: ignore[dict-item]
     assert moved.distance == math.inf
     assert "held: " in str(moved)
 
 
 def test_the_same_status_has_not_moved_whatever_the_load() -> None:
-    now = Measured((held({"a": Ended(Status.BUCKLED, 3.0, "said otherwise")}),))
+    now = MeasuredPart((held({"a": Ended(Status.BUCKLED, 3.0, "said otherwise")}),))
     assert compare("d", [held({"a": BUCKLED})], now) == []
 
 
 def test_rows_and_rungs_that_came_or_went_have_moved() -> None:
     before = [held({"a": (1.0,), "b": (1.0,)}), held({"c": (1.0,)}, "gmsh")]
-    now = Measured((held({"a": (1.0,), "z": (1.0,)}), held({"n": (0.0,)}, "outline")), "it died")
+    now = MeasuredPart(
+        (held({"a": (1.0,), "z": (1.0,)}), held({"n": (0.0,)}, "outline")), "it died"
+    )
     moved = compare("d", before, now)
     said = [(one.held.rung, one.row, one.before, one.now) for one in moved]
     assert said == [
@@ -65,8 +67,8 @@ def test_the_lowest_rung_is_named_and_there_what_moved_most() -> None:
     before = [held({"a": (0.0,), "b": (0.0,)}, "response"), held({"a": (0.0,)}, "section")]
     first = [held({"a": (9.0,), "b": (0.0,)}, "response"), held({"a": (0.0,)}, "section")]
     second = [held({"a": (1.0,), "b": (30.0,)}, "response"), held({"a": (0.0,)}, "section")]
-    moved = compare("d", before, Measured(tuple(first)))
-    moved += compare("e", before, Measured(tuple(second)))
+    moved = compare("d", before, MeasuredPart(tuple(first)))
+    moved += compare("e", before, MeasuredPart(tuple(second)))
     found = lowest(moved)
     assert found is not None
     assert (found.design, found.held.rung, found.row) == ("e", "response", "b")

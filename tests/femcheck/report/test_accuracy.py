@@ -13,7 +13,7 @@ from femcheck.accuracy.folder import run_accuracy
 from femcheck.check.options import CheckOptions
 from femcheck.models.question import Question
 from femcheck.report.accuracy_run import read_accuracy_run
-from femcheck.report.folders import Kind, find_folders
+from femcheck.report.folders import ContentKind, find_folders
 from femcheck.report.page import report_page
 from tests.femcheck.report.folders import HOSTILE, Page, change_json, copied
 
@@ -47,7 +47,9 @@ def not_reached(answered: Path, to: Path) -> Path:
 
 
 def test_an_answer_is_found_and_read(answered: Path) -> None:
-    assert [(one.kind, one.path) for one in find_folders([answered])] == [(Kind.ACCURACY, answered)]
+    assert [(one.kind, one.path) for one in find_folders([answered])] == [
+        (ContentKind.ACCURACY, answered)
+    ]
     run = read_accuracy_run(answered)
     assert (run.name, run.badge.text, run.badge.mood) == ("disc", "reached", "good")
     assert run.seconds > 0

@@ -11,7 +11,7 @@ import pytest
 from beamopt.base.errors import InputError
 from beamopt.storage.writing import csv_text
 from femcheck.report.content import read_table
-from femcheck.report.folders import Kind, find_folders
+from femcheck.report.folders import ContentKind, find_folders
 from femcheck.report.other_runs import read_figure_run, read_search_run
 from femcheck.report.page import report_page
 from femcheck.report.solid_run import read_solid_run
@@ -80,9 +80,9 @@ def test_folders_are_found(checked: Path, predicted: Path, tmp_path: Path) -> No
     (several / "README.md").write_text("nothing of ours")
     found = find_folders([several, predicted, predicted])
     assert [(one.kind, one.path.name) for one in found] == [
-        (Kind.SOLID, "b"),
-        (Kind.FIGURES, "c"),
-        (Kind.SOLID, "predicted"),
+        (ContentKind.SOLID, "b"),
+        (ContentKind.FIGURES, "c"),
+        (ContentKind.SOLID, "predicted"),
     ]
 
 

@@ -8,7 +8,7 @@ import pytest
 import pyvista
 
 from femcheck.report.packing import Scale, pack, stretch_range, unpack_positions
-from femcheck.report.shapes import Shapes, read_shapes
+from femcheck.report.shapes import RunShapes, read_shapes
 from femcheck.report.solid_run import read_solid_run
 from femcheck.report.surface import TIP, Surface, surface_of
 
@@ -16,7 +16,7 @@ STEP_ERROR = 1e-9  # mm, beside half a step
 
 
 @pytest.fixture(scope="module")
-def shapes(checked: Path) -> Shapes:
+def shapes(checked: Path) -> RunShapes:
     found = read_shapes(read_solid_run(checked))
     assert found is not None
     return found
@@ -95,7 +95,7 @@ def test_an_edge_without_tag_is_refused() -> None:
         surface_of(np.eye(3)[[0, 1, 2, 0, 1, 2]], np.array([[0, 1, 2, 3, 4, 5]]), {})
 
 
-def test_the_page_gets_positions_to_half_a_step(shapes: Shapes, checked: Path) -> None:
+def test_the_page_gets_positions_to_half_a_step(shapes: RunShapes, checked: Path) -> None:
     """Against the files themselves; a step is a few thousandths of a millimetre at most."""
     packed = pack(shapes)
     scale = Scale(tuple(packed["offset"]), packed["step"])
@@ -108,7 +108,7 @@ def test_the_page_gets_positions_to_half_a_step(shapes: Shapes, checked: Path) -
         assert np.abs(got - wanted).max() <= scale.step / 2 + STEP_ERROR
 
 
-def test_the_page_gets_stretch_to_half_a_level(shapes: Shapes) -> None:
+def test_the_page_gets_stretch_to_half_a_level(shapes: RunShapes) -> None:
     packed = pack(shapes)
     low, high = stretch_range(shapes)
     for shape, kept in zip(shapes.shapes, packed["shapes"], strict=True):
@@ -118,7 +118,7 @@ def test_the_page_gets_stretch_to_half_a_level(shapes: Shapes) -> None:
     np.testing.assert_allclose(packed["stretch"], [low, high], atol=1e-4)
 
 
-def test_triangles_come_back_part_by_part(shapes: Shapes) -> None:
+def test_triangles_come_back_part_by_part(shapes: RunShapes) -> None:
     packed = pack(shapes)
     got = np.frombuffer(base64.b64decode(packed["triangles"]), dtype="<u2").reshape(-1, 3)
     np.testing.assert_array_equal(got, shapes.surface.triangles)
@@ -126,7 +126,7 @@ def test_triangles_come_back_part_by_part(shapes: Shapes) -> None:
     assert all(count > 0 for count in packed["parts"])  # three supplies, surface and tip
 
 
-def test_the_line_is_the_beam(shapes: Shapes, checked: Path) -> None:
+def test_the_line_is_the_beam(shapes: RunShapes, checked: Path) -> None:
     """Of the design in the folder: from the centroid of the base to the beam's tip."""
     run = read_solid_run(checked)
     centroid = np.append(run.subject.outline.moments.centroid, 0.0)

@@ -12,7 +12,7 @@ from beamopt.base.processes import in_process
 from beamopt.section.drawing import Circle
 from femcheck.material.neo_hookean import NeoHookean
 from femcheck.stability.axis import Axis, Column
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.found import AxisFound
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
@@ -62,29 +62,29 @@ def point(load: float, apart: float, unstable: int = 0, length: float = 60.0) ->
 
 def told_cell(specimen: Specimen, pressure: float) -> CellResult:
     if specimen.length == NOT_A_MESH:
-        return CellResult(Ending.NO_MESH, reason="a wall is too thin")
+        return CellResult(MapEnding.NO_MESH, reason="a wall is too thin")
     if specimen.length == DEADLY:
         os._exit(1)
     limit = specimen.length / 10
     beam = (0.3 * pressure, 0.0, specimen.length)
     if pressure > limit:
-        return CellResult(Ending.LIMIT_POINT, limit, None, beam, None, None, 99, 1000, 1.5)
+        return CellResult(MapEnding.LIMIT_POINT, limit, None, beam, None, None, 99, 1000, 1.5)
     tip = (0.1 * pressure, 0.0, specimen.length)
-    return CellResult(Ending.STABLE, pressure, tip, beam, 1.1, 0, 7, 1000, 0.5)
+    return CellResult(MapEnding.STABLE, pressure, tip, beam, 1.1, 0, 7, 1000, 0.5)
 
 
 def told_row(specimen: Specimen, pressures: tuple[float, ...]) -> TraceResult:
     if specimen.length == NOT_A_MESH:
-        return TraceResult(Ending.NO_MESH, reason="a wall is too thin")
+        return TraceResult(MapEnding.NO_MESH, reason="a wall is too thin")
     limit = specimen.length / 10
     loads = [load for load in np.arange(2, 13, 2.0).tolist() if load <= limit]
     track = [(0.0, 0.0, 0.0, 60.0, np.nan, np.nan, np.nan, 0.0)]
     track += [point(load, 0.2 - 0.02 * load, length=specimen.length) for load in loads]
     if limit > pressures[-1]:
-        return TraceResult(Ending.STABLE, track=tuple(track), triangles=5, layers=2, unknowns=9)
+        return TraceResult(MapEnding.STABLE, track=tuple(track), triangles=5, layers=2, unknowns=9)
     track.append(point(0.9 * limit, 0.0, unstable=1))
     ends = {"critical": limit, "growth": 3.0, "snaps": (1.5,)}
-    return TraceResult(Ending.LIMIT_POINT, **ends, track=tuple(track), triangles=5, layers=2)  # type: ignore[arg-type]
+    return TraceResult(MapEnding.LIMIT_POINT, **ends, track=tuple(track), triangles=5, layers=2)  # type: ignore[arg-type]
 
 
 def make(folder: Path, **changes: Any) -> list[AxisFound]:

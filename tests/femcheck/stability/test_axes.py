@@ -13,7 +13,7 @@ from femcheck.mesh.gmsh_section import Mesher
 from femcheck.stability.axes import AXES
 from femcheck.stability.axis import Axis
 from femcheck.stability.closed_tube import closed_tube_limit
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import solve_cell, trace_row
 from femcheck.stability.specimen import Absent, solid_of
 from tests.femcheck.stability.small import DISC
@@ -60,7 +60,7 @@ def test_no_solid_is_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     without = partial(Mesher, "no-such-gmsh")
     monkeypatch.setattr(femcheck.stability.specimen, "Mesher", without)
     unmeshed = solid_of(replace(DISC, length=61.5))
-    assert unmeshed == Absent(Ending.NO_MESH, "gmsh is not installed: no-such-gmsh")
+    assert unmeshed == Absent(MapEnding.NO_MESH, "gmsh is not installed: no-such-gmsh")
     cell = solve_cell(replace(DISC, length=61.5), 5.0)
     assert (cell.ending, cell.reason) == (unmeshed.ending, unmeshed.reason)
     path = trace_row(replace(DISC, length=61.5), (5.0,))

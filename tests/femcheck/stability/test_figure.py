@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from femcheck.stability.axis import Axis
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.figure import LOOKS, height_of, map_figure, validity_lines
 from femcheck.stability.found import AxisFound
 from femcheck.stability.stability_map import caption_of
@@ -31,8 +31,8 @@ def test_what_has_no_room(pressure: float | None) -> None:
 
 
 def test_every_ending_has_its_own_look() -> None:
-    assert set(LOOKS) == set(Ending)
-    assert len({letter for letter, _, _ in LOOKS.values()}) == len(Ending)
+    assert set(LOOKS) == set(MapEnding)
+    assert len({letter for letter, _, _ in LOOKS.values()}) == len(MapEnding)
 
 
 def test_lines_go_on_between_columns_of_as_many_intervals() -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from femcheck.continuation.outcome import Status
-from femcheck.stability.ending import Ending, ending_of
-from femcheck.stability.found import AxisFound, Row, agreement_of, share_of_cell
+from femcheck.stability.ending import MapEnding, ending_of
+from femcheck.stability.found import AxisFound, MapRow, agreement_of, share_of_cell
 from femcheck.stability.reading import reading
 from tests.femcheck.stability.small import make
 
@@ -17,11 +17,11 @@ def found(told: None, tmp_path: Path) -> list[AxisFound]:
     return make(tmp_path / "map")
 
 
-def rows_of(found: list[AxisFound]) -> list[Row]:
+def rows_of(found: list[AxisFound]) -> list[MapRow]:
     return [row for one in found for row in one.rows]
 
 
-def with_cell(row: Row, place: int, ending: Ending) -> Row:
+def with_cell(row: MapRow, place: int, ending: MapEnding) -> MapRow:
     cell = row.cells[place]
     assert cell is not None
     cells = list(row.cells)
@@ -38,17 +38,17 @@ def test_all_agree(found: list[AxisFound]) -> None:
 @pytest.mark.parametrize(
     ("place", "ending", "counted"),
     [
-        (2, Ending.STABLE, "against"),  # an equilibrium above the limit
-        (0, Ending.LIMIT_POINT, "against"),  # none below it
-        (0, Ending.BUCKLED, "against"),
-        (2, Ending.INVERTED, "neither"),
-        (0, Ending.UNSTABLE, "neither"),
-        (0, Ending.NO_MESH, "neither"),
-        (2, Ending.BUCKLED, "agree"),  # there is none, for another reason
+        (2, MapEnding.STABLE, "against"),  # an equilibrium above the limit
+        (0, MapEnding.LIMIT_POINT, "against"),  # none below it
+        (0, MapEnding.BUCKLED, "against"),
+        (2, MapEnding.INVERTED, "neither"),
+        (0, MapEnding.UNSTABLE, "neither"),
+        (0, MapEnding.NO_MESH, "neither"),
+        (2, MapEnding.BUCKLED, "agree"),  # there is none, for another reason
     ],
 )
 def test_what_contradicts_is_counted(
-    found: list[AxisFound], place: int, ending: Ending, counted: str
+    found: list[AxisFound], place: int, ending: MapEnding, counted: str
 ) -> None:
     row = with_cell(found[0].rows[0], place, ending)
     said = agreement_of([row])
@@ -71,7 +71,7 @@ def test_near_the_line_nothing_is_judged(found: list[AxisFound]) -> None:
 def test_a_path_that_failed_says_nothing_above(found: list[AxisFound]) -> None:
     row = found[0].rows[0]
     assert row.trace is not None
-    said = agreement_of([replace(row, trace=replace(row.trace, ending=Ending.INVERTED))])
+    said = agreement_of([replace(row, trace=replace(row.trace, ending=MapEnding.INVERTED))])
     assert (said.agree, said.near) == (1, 2)
 
 
@@ -94,9 +94,9 @@ def test_share(found: list[AxisFound]) -> None:
 
 
 def test_endings() -> None:
-    assert ending_of(Status.CONVERGED, 0) is Ending.STABLE
-    assert ending_of(Status.CONVERGED, 2) is Ending.UNSTABLE
-    assert ending_of(Status.CONVERGED, None) is Ending.UNCHECKED
+    assert ending_of(Status.CONVERGED, 0) is MapEnding.STABLE
+    assert ending_of(Status.CONVERGED, 2) is MapEnding.UNSTABLE
+    assert ending_of(Status.CONVERGED, None) is MapEnding.UNCHECKED
     for status in Status:
         if status is not Status.CONVERGED:
             assert ending_of(status, None).value == status.value
@@ -109,7 +109,7 @@ def test_the_reading_tells_what_contradicts(found: list[AxisFound]) -> None:
     assert "| length: 90 | 9 | 10 | -10.0% |" in text
     assert "| 60 | limit point at 6 kPa, after snaps at 1.5 kPa | 3 × | nowhere |" in text
     assert "| 130 | not up to 12 kPa | | 7.5…12 kPa (the end) |" in text
-    wrong = with_cell(found[0].rows[0], 2, Ending.STABLE)
+    wrong = with_cell(found[0].rows[0], 2, MapEnding.STABLE)
     less = replace(found[0].rows[1], cells=(None, *found[0].rows[1].cells[1:]))
     other = AxisFound(found[0].axis, (wrong, less, found[0].rows[2]))
     text = " ".join(reading([other]).split())
@@ -122,7 +122,7 @@ def test_the_reading_tells_what_contradicts(found: list[AxisFound]) -> None:
 def test_the_reading_tells_where_load_control_misses_the_stable_path(
     found: list[AxisFound],
 ) -> None:
-    row = with_cell(with_cell(found[0].rows[1], 0, Ending.UNSTABLE), 2, Ending.UNSTABLE)
+    row = with_cell(with_cell(found[0].rows[1], 0, MapEnding.UNSTABLE), 2, MapEnding.UNSTABLE)
     text = reading([AxisFound(found[0].axis, (found[0].rows[0], row, found[0].rows[2]))])
     assert "In 1 cells load control ends at an equilibrium that is unstable" in " ".join(
         text.split()

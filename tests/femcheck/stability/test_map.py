@@ -8,8 +8,8 @@ import pytest
 import femcheck.stability.work
 from beamopt.base.errors import InputError
 from beamopt.base.processes import processes
-from femcheck.stability.ending import Ending
-from femcheck.stability.journal import Journal
+from femcheck.stability.ending import MapEnding
+from femcheck.stability.journal import MapJournal
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
 from femcheck.stability.stability_map import NAMES, redraw_map
@@ -140,22 +140,22 @@ def test_a_process_that_dies(tmp_path: Path) -> None:
     (found,) = make(tmp_path / "map", axes=axes, workers=2, pool=processes)
     first, second = found.rows
     assert [cell.ending for cell in first.cells if cell] == [
-        Ending.STABLE,
-        *2 * [Ending.LIMIT_POINT],
+        MapEnding.STABLE,
+        *2 * [MapEnding.LIMIT_POINT],
     ]
-    assert [cell.ending for cell in second.cells if cell] == 3 * [Ending.STOPPED]
+    assert [cell.ending for cell in second.cells if cell] == 3 * [MapEnding.STOPPED]
     assert second.trace is not None
     assert second.trace.critical == pytest.approx(6.6)
 
 
 def test_what_was_stopped_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stopped = CellResult(Ending.STOPPED)
+    stopped = CellResult(MapEnding.STOPPED)
     monkeypatch.setattr(femcheck.stability.work, "solve_cell", lambda *task: stopped)
     make(tmp_path / "map")
     monkeypatch.setattr(femcheck.stability.work, "solve_cell", told_cell)
     found = make(tmp_path / "map", resume=True)
     endings = {cell.ending for one in found for row in one.rows for _, cell in row.solved}
-    assert endings == {Ending.STABLE, Ending.LIMIT_POINT, Ending.NO_MESH}
+    assert endings == {MapEnding.STABLE, MapEnding.LIMIT_POINT, MapEnding.NO_MESH}
 
 
 def test_another_question_is_refused(whole: Path) -> None:
@@ -186,7 +186,7 @@ def test_a_folder_that_is_in_use_is_refused(whole: Path, tmp_path: Path) -> None
         make(whole)
     with pytest.raises(InputError, match="no map to draw again"):
         redraw_map(tmp_path / "nowhere", axes_of())
-    Journal(tmp_path / "journal.jsonl", axes_of())
+    MapJournal(tmp_path / "journal.jsonl", axes_of())
     with pytest.raises(InputError, match="holds nothing"):
         redraw_map(tmp_path, axes_of())
 
@@ -200,13 +200,13 @@ def test_a_line_says_all_there_is_to_know(tmp_path: Path) -> None:
         ("length", 1, 0): told_cell(specimen, 4.0),
         ("length", 1, 2): told_cell(specimen, 12.0),
     }
-    journal = Journal(tmp_path / "journal.jsonl", axes)
+    journal = MapJournal(tmp_path / "journal.jsonl", axes)
     for key, result in results.items():
         journal.add(axis, key, result)
     path = tmp_path / "journal.jsonl"
-    read = Journal(path, axes).results
+    read = MapJournal(path, axes).results
     assert repr(read) == repr(results)  # not a number is not equal to itself
     for damaged in flipped(path.read_bytes()):
         path.write_bytes(damaged)
         with pytest.raises(InputError, match=r"journal\.jsonl: line [1-4]"):
-            Journal(path, axes)
+            MapJournal(path, axes)

@@ -7,7 +7,7 @@ import pytest
 
 import femcheck.solved.case
 from femcheck.stability.axis import Axis, Column
-from femcheck.stability.ending import Ending
+from femcheck.stability.ending import MapEnding
 from femcheck.stability.found import agreement_of, share_of_cell
 from femcheck.stability.solve import TRACK
 from tests.femcheck.stability.small import DISC, make
@@ -27,10 +27,10 @@ def test_cells_of_a_real_row_agree_with_its_path(tmp_path: Path) -> None:
     assert (said.agree, said.near, said.against, said.neither) == (4, 0, (), ())
     assert said.tips < 1e-4
     assert row.trace is not None
-    assert row.trace.ending is Ending.LIMIT_POINT
+    assert row.trace.ending is MapEnding.LIMIT_POINT
     last = row.cells[-1]
     assert last is not None
-    assert last.ending is Ending.LIMIT_POINT
+    assert last.ending is MapEnding.LIMIT_POINT
     assert row.trace.critical is not None
     assert last.reached == pytest.approx(row.trace.critical, rel=1e-3)
     first = row.cells[0]

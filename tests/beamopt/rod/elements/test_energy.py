@@ -6,8 +6,8 @@ import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.rod.elements.energy import (
+    ElementState,
     Mesh,
-    State,
     assemble,
     measure,
     potential,
@@ -30,7 +30,7 @@ from tests.beamopt.rod.elements.rods import (
 FACTOR = 0.7
 
 
-def away_from_rest(mesh: Mesh, rod: Rod) -> State:
+def away_from_rest(mesh: Mesh, rod: Rod) -> ElementState:
     """Not in equilibrium, with the wrenches of its strains."""
     rng = np.random.default_rng(2)
     state = at_rest(rod, mesh)
@@ -41,9 +41,9 @@ def away_from_rest(mesh: Mesh, rod: Rod) -> State:
     return state
 
 
-def moved(state: State, x: FloatArray) -> State:
+def moved(state: ElementState, x: FloatArray) -> ElementState:
     """Frames times exp x; wrenches and φ as they were."""
-    state = State(*(part.copy() for part in state))
+    state = ElementState(*(part.copy() for part in state))
     R, h = np.empty((3, 3)), np.empty(3)
     for node in range(len(x)):
         exponential(x[node], R, h)
@@ -52,14 +52,14 @@ def moved(state: State, x: FloatArray) -> State:
     return state
 
 
-def gradient_of(mesh: Mesh, state: State) -> FloatArray:
+def gradient_of(mesh: Mesh, state: ElementState) -> FloatArray:
     gradient = np.empty((mesh.lengths.size + 1, 6))
     measure(mesh, state)
     assemble(mesh, state, FACTOR, gradient, workspace(len(gradient)))
     return gradient.ravel()
 
 
-def matrix_of(mesh: Mesh, state: State) -> FloatArray:
+def matrix_of(mesh: Mesh, state: ElementState) -> FloatArray:
     """The derivative, assembled."""
     nodes = mesh.lengths.size + 1
     blocks = workspace(nodes)
@@ -72,7 +72,7 @@ def matrix_of(mesh: Mesh, state: State) -> FloatArray:
     return matrix.reshape(6 * nodes, 6 * nodes)
 
 
-def differences(mesh: Mesh, state: State, step: float = 1e-5) -> FloatArray:
+def differences(mesh: Mesh, state: ElementState, step: float = 1e-5) -> FloatArray:
     """Central differences of the gradient along increments of the frames."""
     size = 6 * (mesh.lengths.size + 1)
     columns = []
