@@ -5,10 +5,10 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Callable, Sequence
+from importlib import import_module
 from typing import NoReturn
 
-__all__ = ["main", "prepare", "run_and_leave"]
+__all__ = ["main", "prepare", "start"]
 
 
 def prepare() -> None:
@@ -37,9 +37,16 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
 
 
-def run_and_leave(run: Callable[[Sequence[str]], int]) -> NoReturn:
-    """Run a command with the process's arguments and end the process with its exit code."""
-    code = run(sys.argv[1:])
+def start(program: str) -> NoReturn:
+    """Run the command line of a program with the process's arguments; ends the process."""
+    try:
+        prepare()
+        code = import_module(f"{program}.cli.application").run(sys.argv[1:])
+    except KeyboardInterrupt:  # while it loads
+        from beamopt.cli.signals import exit_code, name_of_end
+
+        print(f"{program}: {name_of_end()}", file=sys.stderr)
+        code = exit_code()
     try:
         sys.stdout.flush()
     except OSError:  # said by `run`; the interpreter is not to try, and complain, again
@@ -49,7 +56,4 @@ def run_and_leave(run: Callable[[Sequence[str]], int]) -> NoReturn:
 
 def main() -> None:
     """Run the command line; bad input is one line on standard error and exit code 2."""
-    prepare()
-    from beamopt.cli.application import run
-
-    run_and_leave(run)
+    start("beamopt")

@@ -41,6 +41,8 @@ def finish(app: typer.Typer, program: str, arguments: Sequence[str]) -> int:
     except (typer.Abort, KeyboardInterrupt):
         return _complain(program, name_of_end(), exit_code())
     except ImportError as error:
+        if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
+            return _complain(program, name_of_end(), exit_code())  # a signal while it loaded
         missing = (error.name or str(error)).partition(".")[0]
         said = f"{missing} is not installed: pip install 'beamopt[fem]'"
         return _complain(program, said, ExitCode.NOT_COMPUTED)

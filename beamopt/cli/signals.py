@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
+import threading
 
 from beamopt.base.errors import EndedBySignalError
 
@@ -11,11 +14,14 @@ __all__ = ["INTERRUPTED", "exit_code", "heed_signals", "name_of_end"]
 ENDING = {"SIGTERM": "terminated", "SIGHUP": "hung up"}
 INTERRUPTED = 130  # exit code of Ctrl-C, as shells have it
 
+AGAIN = 0.05  # s after which a signal that a library's callback swallowed is sent again
+
 _received: list[int] = []
 
 
 def heed_signals() -> None:
     """Let SIGTERM and SIGHUP end what is under way; one that is ignored, as by nohup, stays so."""
+    sys.unraisablehook = _send_again
     for name in ENDING:
         number = getattr(signal, name, None)  # not every system has both
         if number is not None and signal.getsignal(number) == signal.SIG_DFL:
@@ -25,6 +31,15 @@ def heed_signals() -> None:
 def _end(number: int, _frame: object) -> None:
     _received.append(number)
     raise EndedBySignalError(number)
+
+
+def _send_again(lost: sys.UnraisableHookArgs) -> None:
+    """Send a signal again that came within a callback from C, which can not raise."""
+    if not isinstance(lost.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    number = getattr(lost.exc_value, "number", signal.SIGINT)
+    threading.Timer(AGAIN, os.kill, (os.getpid(), number)).start()
 
 
 def exit_code() -> int:

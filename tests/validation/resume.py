@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import signal
@@ -18,6 +19,8 @@ from tests.kills import differing
 from tests.validation.check import Check, Row
 
 ENDED = (0, 1)  # exit codes of what was computed, whatever it says
+PROGRAMS = ("beamopt", "femcheck")
+SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 UNLIKE = {"timing.csv", "provenance.json"}
 
 
@@ -53,22 +56,68 @@ def run(arguments: Sequence[str]) -> float:
     return time.monotonic() - started
 
 
-def killed(arguments: Sequence[str], after: float, temporary: Path) -> bool:
-    """Run and send SIGKILL after some seconds; whether it was still running."""
+def as_in_a_terminal() -> None:
+    """Heed Ctrl-C, which what a shell starts in the background ignores, as do its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def killed(arguments: Sequence[str], after: float, temporary: Path, number: int) -> bool:
+    """Run and send a signal after some seconds; whether it ended the command."""
     with subprocess.Popen(
         command(*arguments),
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
+        text=True,
         env=os.environ | {"TMPDIR": str(temporary)},
+        preexec_fn=as_in_a_terminal,
     ) as process:
         try:
             _, said = process.communicate(timeout=after)
         except subprocess.TimeoutExpired:
-            os.kill(process.pid, signal.SIGKILL)
-            process.communicate()
-            return True
+            os.kill(process.pid, number)
+            _, said = process.communicate()
+            if process.returncode not in ENDED:
+                _check_ended(process.returncode, number, said)
+                return True
     assert process.returncode in ENDED, said
     return False
+
+
+def _check_ended(code: int, number: int, said: str) -> None:
+    """One line and the exit code of shells; or nothing, by a signal that came before Python."""
+    if number == signal.SIGKILL or code == -number:
+        assert code == -number
+        return
+    lines = [line for line in said.splitlines() if line.partition(": ")[0] in PROGRAMS]
+    assert code == 128 + number, said
+    assert len(lines) == 1, said
+    assert "Traceback" not in said, said
+
+
+def kill_a_worker(arguments: Sequence[str], after: float) -> bool:
+    """Run to the end, and send SIGKILL to one of its processes; whether there was one."""
+    with subprocess.Popen(
+        command(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    ) as process:
+        time.sleep(after)
+        workers = _workers_of(process.pid)
+        for number in workers[:1]:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        _, said = process.communicate()
+    assert process.returncode in ENDED, said
+    assert "Traceback" not in said, said
+    return bool(workers)
+
+
+def _workers_of(process: int) -> list[int]:
+    """Processes that a process has spawned to work for it."""
+    found = []
+    for number in Path(f"/proc/{process}/task/{process}/children").read_text().split():
+        with contextlib.suppress(OSError):
+            if b"spawn_main" in Path(f"/proc/{number}/cmdline").read_bytes():
+                found.append(int(number))
+    return found
 
 
 @dataclass(frozen=True)
@@ -78,6 +127,7 @@ class Chain:
     arguments : without `--out`; {small} stands for the file of a small sealed design.
     goes_on : whether it has `--resume`; others begin again in the same folder.
     apart : files that hold times besides those that always do.
+    processes : whether it has workers that are processes.
     """
 
     name: str
@@ -85,12 +135,13 @@ class Chain:
     kills: int
     goes_on: bool = True
     apart: tuple[str, ...] = ()
+    processes: bool = False
 
-    def survive(self, seed: int) -> tuple[int, int]:
-        """Kill it so many times, over as many folders as that takes.
+    def survive(self, seed: int) -> Iterator[Row]:
+        """Kill it so many times, over as many folders as that takes; then one of its processes.
 
-        Returns how often it was killed, and how many files differed from an undisturbed run's or
-        were left in the temporary folder.
+        Rows count the files that differ from an undisturbed run's, or that are left in the
+        temporary folder.
         """
         from tests.femcheck.check.small import design_of, three_circles  # which loads femcheck
 
@@ -101,17 +152,31 @@ class Chain:
             design_of(three_circles()).save(small)
             temporary.mkdir()
             arguments = [part.format(small=small) for part in self.arguments]
-            seconds = run([*arguments, "--out", str(root / "whole")])
+            whole = root / "whole"
+            seconds = run([*arguments, "--out", str(whole)])
             done = wrong = folder = 0
             while done < self.kills:
                 folder += 1
                 there = root / f"killed-{folder}"
                 again = [*arguments, "--out", str(there), *(["--resume"] if self.goes_on else [])]
-                while killed(again, rng.uniform(0.1, 1.1) * seconds, temporary):
+                while killed(
+                    again, rng.uniform(0.1, 1.1) * seconds, temporary, rng.choice(SIGNALS)
+                ):
                     done += 1
-                wrong += len(differing(root / "whole", there, self.apart))
+                wrong += len(differing(whole, there, self.apart))
                 wrong += len(list(temporary.glob("beamopt-*")))
-        return done, wrong
+            what = f"{self.name}: files that differ from an undisturbed run's, after {done} kills"
+            yield Row(what, "signals at random moments", 0, wrong, 0)
+            if not self.processes:
+                return
+            there, tried = root / "lost-0", 0
+            while not kill_a_worker(
+                [*arguments, "--out", str(there)], rng.uniform(0.2, 0.9) * seconds
+            ):
+                tried += 1
+                there = root / f"lost-{tried}"
+            what = f"{self.name}: files that differ after one of its processes was killed"
+            yield Row(what, "SIGKILL", 0, len(differing(whole, there, self.apart)), 0)
 
 
 SOLID = ("--layers", "2", "--size", "9")
@@ -119,7 +184,7 @@ SILICONE = ("--law", "neo-hookean", "--nu", "0.4")
 STUDY = ("study", "--iterations", "1", "--set", "search.generations=4")
 FRONT = ("pareto", "random-section", "--objectives", "L,mass", "--population", "24")
 CHAINS = (
-    Chain("study", (*STUDY, "--workers", "2"), 6),
+    Chain("study", (*STUDY, "--workers", "2"), 6, processes=True),
     Chain("front", (*FRONT, "--generations", "30"), 8),
     Chain("bound", ("bound", "hand-drawn-workspace"), 6, goes_on=False),
     Chain("export", ("export", "{small}"), 8, goes_on=False),
@@ -133,19 +198,34 @@ CHAINS = (
     Chain(
         "map of rods",
         ("stability", "--samples", "8", "--workers", "2"),
-        4,
+        3,
         apart=("reading.md", "stability.svg", "stability.png"),
+        processes=True,
     ),
-    Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 8),
-    Chain("prediction", ("femcheck", "run", "{small}", "--law", "neo-hookean", *SOLID), 8),
-    Chain("accuracy", ("femcheck", "run", "{small}", *SILICONE, "--accuracy", "5mm"), 6),
+    Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 8, processes=True),
+    Chain(
+        "prediction",
+        ("femcheck", "run", "{small}", "--law", "neo-hookean", *SOLID),
+        8,
+        processes=True,
+    ),
+    Chain(
+        "accuracy",
+        ("femcheck", "run", "{small}", *SILICONE, "--accuracy", "5mm"),
+        3,
+        processes=True,
+    ),
+    Chain(
+        "baseline", ("femcheck", "baseline", "{small}", "--force"), 4, goes_on=False, processes=True
+    ),
     Chain(
         "chart",
         ("femcheck", "chart", "{small}", "--family", "raster", "--family", "beam"),
         6,
         apart=("chart.svg", "chart.png", "reading.md", "cheapest.csv"),
+        processes=True,
     ),
-    Chain("map", ("femcheck", "stability", "--axis", "tube"), 6),
+    Chain("map", ("femcheck", "stability", "--axis", "tube"), 3, processes=True),
 )
 """Every command that writes a folder, but for a search."""
 
@@ -156,13 +236,7 @@ def checks(full: bool) -> list[Check]:
     search = [*scene, "--set", f"search.generations={generations}"]
 
     def after_kills(chain: Chain) -> Check:
-        def rows() -> Iterator[Row]:
-            done, wrong = chain.survive(seed=2)
-            source = "SIGKILL at random moments"
-            what = f"{chain.name}: files that differ from an undisturbed run's, after {done} kills"
-            yield Row(what, source, 0, wrong, 0)
-
-        return Check(chain.name, rows)
+        return Check(chain.name, lambda: chain.survive(seed=2))
 
     def same_for(name: str, arguments: list[str], workers: tuple[int, ...]) -> Check:
         def rows() -> Iterator[Row]:
