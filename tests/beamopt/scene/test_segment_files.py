@@ -11,7 +11,7 @@ import pytest
 
 import beamopt
 from beamopt.base.errors import InputError
-from beamopt.scene import segment_files
+from beamopt.scene import design as module
 from beamopt.scene.design import read_design
 
 SCENE = beamopt.load_scene("random-section", ["grid.radial=8", "grid.angular=24"])
@@ -29,14 +29,14 @@ def write(file: Path, *names: str) -> None:
 
 @pytest.fixture
 def reads(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Names of the files of segments that were read."""
+    """Names of the design files that were read."""
     found: list[str] = []
 
     def noted(file: Path) -> beamopt.Design:
         found.append(file.name)
         return read_design(file)
 
-    monkeypatch.setattr(segment_files, "read_design", noted)
+    monkeypatch.setattr(module, "read_design", noted)
     return found
 
 
@@ -44,7 +44,7 @@ def test_a_tower_of_files_is_read_one_deep(tmp_path: Path, reads: list[str]) -> 
     for level in range(13):
         write(tmp_path / f"{level}.json", *[f"{level + 1}.json"] * 3)
     design = beamopt.load_design(tmp_path / "0.json")
-    assert reads == ["1.json"]
+    assert reads == ["0.json", "1.json"]
     assert len(design.rod.segments) == 4
     assert all("rod" not in (one.section or {}) for one in design.rod.segments)
     assert len(design.loaded_rod.pieces) == 4
@@ -53,7 +53,7 @@ def test_a_tower_of_files_is_read_one_deep(tmp_path: Path, reads: list[str]) -> 
 def test_a_design_that_names_itself_is_its_section(tmp_path: Path, reads: list[str]) -> None:
     write(tmp_path / "a.json", "a.json")
     design = beamopt.load_design(tmp_path / "a.json")
-    assert reads == ["a.json"]
+    assert reads == ["a.json", "a.json"]
     plain = json.loads(DESIGN.json())
     del plain["notes"]
     assert design.rod.segments[1].section == plain
@@ -67,9 +67,9 @@ def test_sections_too_long_to_be_held_in_one_file_are_refused(
     write(tmp_path / "a.json", "b.json", "b.json", "b.json")
     write(tmp_path / "b.json")
     size = len(DESIGN.json())
-    monkeypatch.setattr(segment_files, "MOST_INLINE", int(2.5 * size))
+    monkeypatch.setattr(module, "MOST_INLINE", int(2.5 * size))
     with pytest.raises(InputError) as caught:
         beamopt.load_design(tmp_path / "a.json")
     assert (caught.value.key, caught.value.value) == ("rod.segments[3]", "b.json")
-    monkeypatch.setattr(segment_files, "MOST_INLINE", int(3.5 * size))
+    monkeypatch.setattr(module, "MOST_INLINE", int(3.5 * size))
     assert beamopt.load_design(tmp_path / "a.json").rod.segments[3].section is not None
