@@ -101,7 +101,6 @@ def coarse_options(model: SolidModel, law: LawChoice) -> LawChoice:
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers that load nothing; maps of few and made-up answers; no figures."""
     monkeypatch.setattr(beamopt.study.pool, "_Processes", Forks)
-    monkeypatch.setattr("beamopt.plot.style.save_figure", lambda *_: None)
     monkeypatch.setattr("beamopt.chart.stability.solve_sample", sample_by_modes)
     monkeypatch.setattr("femcheck.cli.stability.AXES", axes_of())
     monkeypatch.setattr("femcheck.stability.work.solve_cell", told_cell)
