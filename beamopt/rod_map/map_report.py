@@ -99,14 +99,16 @@ def _methods(samples: Sequence[Sample]) -> list[str]:
 
 def _draw(folder: Path, samples: Sequence[Sample]) -> None:
     count = f"{len(samples):,} random sections under load"
+    of_kinds = {kind: [one for one in samples if one.case.kind is kind] for kind in CaseKind}
     by_size = [
         _panel(
             kind.text,
-            [sample for sample in samples if sample.case.kind is kind],
+            found,
             [(f"{size:g}", size) for size in sizes_of(kind)],
             lambda row: row.case.size,
         )
-        for kind in CaseKind
+        for kind, found in of_kinds.items()
+        if found  # few samples have not all kinds
     ]
     texts = {verdict.name: verdict.value for verdict in MethodVerdict}
     title = f"{count}: commonest verdict and median time"

@@ -43,6 +43,7 @@ class Schedule:
     slopes: dict[str, FloatArray | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._tried: set[str] = set()
         self._stage = {stage.name: stage for stage in self.stages}
         self.keys = [(stage.name, node) for stage in self.stages for node in all_nodes()]
 
@@ -74,7 +75,10 @@ class Schedule:
         return name in self.slopes if isinstance(source, int) else (name, source) in self.results
 
     def begin(self, executor: Executor, waiting: Sequence[Key]) -> bool:
-        """Find the slopes at rest of all stages begun; False where a process died of it."""
+        """Find the slopes at rest of all stages begun; False where a process died of it.
+
+        A stage whose process dies twice has none.
+        """
         begun = {key[0] for key in waiting}
         begun |= {stage.follows for stage in self.stages if stage.name in begun and stage.follows}
         for stage in self.stages:
@@ -82,7 +86,9 @@ class Schedule:
                 try:
                     self.slopes[stage.name] = executor.submit(rest_slopes, stage.solid).result()
                 except lost_errors():
-                    self.slopes[stage.name] = None  # its cases start without a prediction
+                    if stage.name in self._tried:
+                        self.slopes[stage.name] = None  # its cases start without a prediction
+                    self._tried.add(stage.name)
                     return False
         return True
 

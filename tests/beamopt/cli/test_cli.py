@@ -27,6 +27,13 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.parametrize("package", ["beamopt", "femcheck"])
+def test_a_package_runs_as_a_command(package: str) -> None:
+    asked = [sys.executable, "-m", package, "--version"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith(package)
+
+
 def complaint(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     """What a bad call says: exit code 2, one line, nothing on standard output."""
     assert run(arguments) == 2
