@@ -101,6 +101,7 @@ def coarse_options(model: SolidModel, law: LawChoice) -> LawChoice:
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers that load nothing; maps of few and made-up answers; no figures."""
     monkeypatch.setattr(beamopt.base.processes, "_Processes", Forks)
+    monkeypatch.setattr("beamopt.rod_map.map_report._draw", lambda *_: None)
     monkeypatch.setattr("beamopt.rod_map.stability.solve_sample", sample_by_modes)
     monkeypatch.setattr("femcheck.cli.stability.AXES", axes_of())
     monkeypatch.setattr("femcheck.stability.work.solve_cell", told_cell)
