@@ -18,6 +18,7 @@ FLOORS = [
         "beamopt.brief",
         "beamopt.public_names",
         "beamopt.errors",
+        "beamopt.lost_workers",
         "beamopt.input_file",
         "beamopt.files",
         "beamopt.frames",

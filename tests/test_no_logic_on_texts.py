@@ -35,6 +35,7 @@ OF_PEOPLE = {
     "beamopt/cli/bound.py": "text",  # an option as it was given
     "beamopt/cli/endings.py": "text",  # put on one line, whatever it says
     "beamopt/cli/tips.py": "text",
+    "beamopt/export/step.py": "text",  # a file of the kernel's
     "beamopt/files.py": "text",  # a cell of a table, defused
     "beamopt/input_file.py": "text",  # a file
     "beamopt/overrides.py": "text",

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamopt.arrays import FloatArray
-from beamopt.study.work import lost_errors
+from beamopt.lost_workers import lost_errors
 from femcheck.check.case import Case, CaseResult, rest_slopes, solve_case, stopped
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits

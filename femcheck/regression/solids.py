@@ -140,7 +140,9 @@ def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
     said = f"{source}; at least what Newton leaves"
     rung, layers, law = "solid, limit", f"{LAYERS} layers", question.law_text
     # the ending also where it is a tip: numbers of a solution are not the same to the last digit
-    endings: dict[str, Row] = dict(zip(map(at, question.pressures), replies[0].endings, strict=True))
+    endings: dict[str, Row] = dict(
+        zip(map(at, question.pressures), replies[0].endings, strict=True)
+    )
     yield Held(rung, layers, "endings", "", endings, 0.0, NO_NUMBERS, law)
     late = {row: one for row, one in endings.items() if is_late(one)}
     rows = columns(endings, loads[0]) | late
