@@ -39,6 +39,7 @@ OF_PEOPLE = {
     "beamopt/storage/writing.py": "text",  # a cell of a table, defused
     "beamopt/storage/input_file.py": "text",  # a file
     "beamopt/scene/overrides.py": "text",
+    "beamopt/export/step.py": "text",  # a file of the kernel's
     "beamopt/pareto/scores.py": "text",
     "beamopt/scene/toml_text.py": "text",
     "beamopt/storage/number_table.py": "text",

@@ -5,28 +5,19 @@ Workers are processes, or one thread: a worker keeps factors between tasks.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
 from beamopt.base.errors import NotComputedError
+from beamopt.base.lost_workers import lost_errors
 
-__all__ = ["Tasks", "Work", "check_none_lost", "lost_errors", "solve_all"]
+__all__ = ["Tasks", "Work", "check_none_lost", "solve_all"]
 
 Key = TypeVar("Key", bound=tuple[Any, ...] | str | int)
 Result = TypeVar("Result")
-
-OF_CLUSTERS = (("distributed", "KilledWorker"), ("ipyparallel.error", "EngineError"))
-"""Module and name of the errors by which executors of clusters say that a worker died."""
-
-
-def lost_errors() -> tuple[type[BaseException], ...]:
-    """Errors that say a worker died under a task; of a cluster's library only if it is loaded."""
-    known = [getattr(sys.modules.get(module), name, None) for module, name in OF_CLUSTERS]
-    return (BrokenExecutor, *(kind for kind in known if isinstance(kind, type)))
 
 
 class Work(Protocol[Key, Result]):

@@ -70,7 +70,7 @@ def _wire(occ: Any, contour: dict[str, Any], z: float) -> int:
 
 def main() -> None:
     """Read the solids, write the file, print the volumes."""
-    print("\n" + json.dumps(write_step(json.load(sys.stdin), sys.argv[1])))
+    print("\n" + json.dumps(write_step(json.load(sys.stdin), sys.argv[1]), allow_nan=False))
 
 
 if __name__ == "__main__":

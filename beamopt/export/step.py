@@ -22,7 +22,8 @@ SECONDS = 300.0  # time limit of the kernel
 VOLUME_TOLERANCE = 1e-6  # of a solid's volume, between the kernel's and the contours'
 KERNEL = Path(__file__).with_name("kernel.py")
 NEEDS_GMSH = "needs gmsh: pip install 'beamopt[fem]'"
-SOLID = r"(MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(''"
+SOLID = re.compile(r"(MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(''")
+PRODUCT = re.compile(r"PRODUCT\('[^']*',\s*'[^']*'")
 DATE = "2000-01-01T00:00:00"  # a file's bytes depend on what is in it alone
 
 
@@ -87,7 +88,7 @@ def _run(solids: list[dict[str, Any]], file: Path, seconds: float) -> list[float
         done = subprocess.run(
             # without the script's folder on its path, whose modules' names are common ones
             [sys.executable, "-P", str(KERNEL), str(file)],
-            input=json.dumps(solids),
+            input=json.dumps(solids, allow_nan=False),
             capture_output=True,
             text=True,
             errors="replace",
@@ -108,21 +109,18 @@ def _named(text: str, names: Sequence[str], title: str) -> str:
         f"FILE_NAME({_quoted(title)},'{DATE}',(''),(''),'beamopt','beamopt','');\n"
         "FILE_DESCRIPTION(('lengths in mm'),'2;1');"
     )
-    text = re.sub(
-        r"FILE_NAME\(.*?\);\s*FILE_DESCRIPTION\(.*?\);", lambda _: header, text, count=1, flags=re.S
-    )
-    found = len(re.findall(SOLID, text))
+    before, _, _ = text.partition("FILE_NAME(")
+    _, _, description = text.partition("FILE_DESCRIPTION(")
+    _, _, after = description.partition(");")
+    text = before + header + after
+    found = len(SOLID.findall(text))
     if found != len(names):
         said = f"gmsh wrote {found} solids instead of {len(names)}; leave step out of --format"
         raise InputError("step", "", None, said)
     products = iter([title, *names] if len(names) > 1 else [title])
-    text = re.sub(r"PRODUCT\('[^']*',\s*'[^']*'", lambda _: _product(products), text, flags=re.S)
+    text = PRODUCT.sub(lambda _: _product(products), text)
     solids = iter(names)
-    return re.sub(
-        SOLID,
-        lambda solid: f"{solid[1]}({_quoted(next(solids))}",
-        text,
-    )
+    return SOLID.sub(lambda solid: f"{solid[1]}({_quoted(next(solids))}", text)
 
 
 def _product(names: Iterator[str]) -> str:

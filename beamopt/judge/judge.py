@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beamopt.base.arrays import FloatArray, IndexArray
+from beamopt.base.lost_workers import results_on
 from beamopt.judge.answers import Answers, SectionQuestion
 from beamopt.rod.ladder import RodModel, Rung, SectionValues
 from beamopt.rod.pressure_tree import parents_on_grid
@@ -254,7 +255,12 @@ def judge_all(
     executor: Executor | None = None,
     workers: int = 1,
 ) -> list[Verdict]:
-    """Judge a batch in `workers` parts on any executor; the verdicts do not depend on either."""
+    """Judge a batch in `workers` parts on any executor; the verdicts do not depend on either.
+
+    Raises
+    ------
+    NotComputedError : a worker of the executor died.
+    """
     return in_parts(judge, candidates, executor, workers)
 
 
@@ -264,9 +270,14 @@ def in_parts(
     executor: Executor | None,
     workers: int,
 ) -> list[Found]:
-    """What `judged` finds of each candidate, in their order, asked in `workers` parts at a time."""
+    """What `judged` finds of each candidate, in their order, asked in `workers` parts at a time.
+
+    Raises
+    ------
+    NotComputedError : a worker of the executor died.
+    """
     if executor is None or workers <= 1 or len(candidates) < 2 * workers:
         return judged(candidates)
     bounds = np.linspace(0, len(candidates), workers + 1).astype(int)
     parts = [candidates[a:b] for a, b in pairwise(bounds)]
-    return [found for part in executor.map(judged, parts) for found in part]
+    return [one for found in results_on(executor, judged, parts) for one in found]

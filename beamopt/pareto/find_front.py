@@ -64,6 +64,7 @@ def find_front(
     InputError : the target, or the folder or journal to go on with, can not be used; the search
         there has more generations than are asked for; or another process is writing to it.
     ImportError : pymoo is not installed.
+    NotComputedError : a worker of the executor died; what is judged is in the folder.
 
     Examples
     --------

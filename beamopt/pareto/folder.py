@@ -67,7 +67,8 @@ def _delete_designs(folder: Path, wanted: Collection[str]) -> None:
     table = folder / "front.csv"
     if not table.exists():
         return
-    cells = re.split("[,\n]", table.read_text(encoding="utf-8", errors="replace"))
+    lines = table.read_text(encoding="utf-8", errors="replace").split("\n")
+    cells = [cell for line in lines for cell in line.split(",")]
     for name in set(cells).difference(wanted):
         if DESIGN.fullmatch(name):
             (folder / name).unlink(missing_ok=True)

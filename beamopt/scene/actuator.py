@@ -79,7 +79,7 @@ class SegmentChoice(CheckedKeys):
         if self.file is not None and self.section is not None:
             raise ValueError("either file or section")
         try:
-            json.dumps(self.section, ensure_ascii=False).encode()
+            json.dumps(self.section, ensure_ascii=False, allow_nan=False).encode()
         except UnicodeEncodeError:
             raise ValueError("section: text with half a surrogate pair") from None
         return self

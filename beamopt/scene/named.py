@@ -15,6 +15,7 @@ from beamopt.storage.result_folder import design_file
 
 __all__ = ["design_of_scene", "is_scene", "name_of", "named_design"]
 
+SCENE_NAME = re.compile(r"[\w-]+")
 MOST_SECTIONS = 100  # that are drawn until one is stiff
 
 
@@ -54,7 +55,7 @@ def name_of(path: Path, design: Design) -> str:
     """A run's scene and seed; another design's file name."""
     scene, seed = design.notes.get("scene"), design.notes.get("seed")
     of_run = path.is_dir() or path.stem in ("best", "final")
-    named = isinstance(scene, str) and re.fullmatch(r"[\w-]+", scene) and isinstance(seed, int)
+    named = isinstance(scene, str) and SCENE_NAME.fullmatch(scene) and isinstance(seed, int)
     if of_run and named:
         return f"{scene}-{seed}-final" if path.stem == "final" else f"{scene}-{seed}"
     return path.resolve().name if path.is_dir() else path.stem

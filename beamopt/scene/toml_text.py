@@ -56,4 +56,4 @@ def _key(name: str) -> str:
 
 def _text(value: str) -> str:
     """A basic string of TOML: JSON's escapes, and DEL, which JSON holds as it is."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).replace("\x7f", "\\u007f")

@@ -63,6 +63,7 @@ def run(
     Raises
     ------
     InputError : the journal is not this search's, or goes beyond a reason to stop.
+    NotComputedError : a worker of the executor died; what is judged is in the journal.
 
     Examples
     --------

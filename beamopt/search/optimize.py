@@ -50,6 +50,7 @@ def optimize(
     Raises
     ------
     InputError : the target, or the folder or journal to go on with, can not be used.
+    NotComputedError : a worker of the executor died; what is judged is in the folder.
 
     Examples
     --------

@@ -47,8 +47,8 @@ KINDS = (
     (stat.S_ISSOCK, "a socket"),
 )
 TOML_TOKEN = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*+(?:"{3,5}|\Z)'
-    r"|'''(?:[^']|'(?!''))*+(?:'{3,5}|\Z)"
+    r'"""(?:[^"\\]|\\.|"(?!""))*+(?:"{3,5})?'
+    r"|'''(?:[^']|'(?!''))*+(?:'{3,5})?"
     r'|"(?:[^"\\\n]|\\.)*+"?'
     r"|'[^'\n]*+'?"
     r"|\#[^\n]*+"
@@ -56,7 +56,10 @@ TOML_TOKEN = re.compile(
     r"|(?P<end>[=,\n\[\]{}])",
     re.DOTALL,
 )
-"""Strings and comments, in which a dot means nothing; dots; and what ends a key."""
+"""Strings and comments, in which a dot means nothing; dots; and what ends a key.
+
+A string without an end goes on to the end of the file: nothing in it is read a second time.
+"""
 
 
 def check_regular(path: Path, most: int | None = MOST_BYTES) -> None:
@@ -125,6 +128,8 @@ def read_text(path: Path, most: int = MOST_BYTES) -> str:
         text = read_bytes(path, most).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(path, "", None, "no text file in UTF-8") from None
+    if "\0" in text:  # what a disk leaves of a file that was not written to its end
+        raise InputError(path, "", None, "holds zero bytes: damaged, or no text file")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

@@ -2,13 +2,14 @@
 
 Every line ends with a digest of the rest of it, so that a line that was damaged or changed is
 told from one that was written. Journals of earlier versions have none; they are read, and gone on
-with, without.
+with, without. JSON has no NaN and no infinity: {"not finite": "nan"} stands for one.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -25,6 +26,35 @@ T = TypeVar("T")
 
 LONG = 60  # letters of a value that is not shown
 SEALED = re.compile(r'(\{.+),"digest":"([0-9a-f]{16})"\}', re.DOTALL)
+
+
+NOT_FINITE = "not finite"
+
+
+def _written(entry: Any) -> str:
+    """An entry as JSON that every reader takes."""
+    return json.dumps(_finite(entry), allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return {NOT_FINITE: str(float(value))}
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return [_finite(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def _read(text: str) -> Any:
+    """What `_written` was given, tuples as lists."""
+    return json.loads(text, object_hook=_number_or_object)
+
+
+def _number_or_object(found: dict[str, Any]) -> Any:
+    if found.keys() != {NOT_FINITE}:
+        return found
+    if found[NOT_FINITE] not in ("nan", "inf", "-inf"):
+        raise ValueError("another number")
+    return float(found[NOT_FINITE])
 
 
 def with_digest(text: str) -> str:
@@ -78,7 +108,7 @@ class LineJournal:
         lines = content.splitlines(keepends=True)
         whole = [line for line in lines if line.endswith(b"\n")]
         if not whole:
-            head = b"" if asked is None else (with_digest(json.dumps(asked)) + "\n").encode()
+            head = b"" if asked is None else (with_digest(_written(asked)) + "\n").encode()
             if asked is None or not head.startswith(content):  # half a line of another file
                 raise self.damaged(1)
             self.asked = asked
@@ -86,7 +116,7 @@ class LineJournal:
             return
         self.digests = SEALED.fullmatch(whole[0][:-1].decode(errors="replace")) is not None
         self.asked = self._object(1, whole[0])
-        if asked is not None and self.asked != json.loads(json.dumps(asked)):
+        if asked is not None and self.asked != _read(_written(asked)):
             raise self._other(asked)
         self.entries = [self._object(number, line) for number, line in enumerate(whole[1:], 2)]
         if asked is not None and len(whole) < len(lines):  # a kill left half a line
@@ -98,7 +128,7 @@ class LineJournal:
         try:
             text = line[:-1].decode()
             checked = without_digest(text)
-            found = json.loads(text if checked is None else checked)
+            found = _read(text if checked is None else checked)
         except (ValueError, RecursionError):
             raise self.damaged(number) from None
         if not isinstance(found, dict) or (checked is not None) != self.digests:
@@ -108,7 +138,7 @@ class LineJournal:
         return found
 
     def _other(self, asked: dict[str, Any]) -> InputError:
-        key, before, now = next(differences(self.asked, json.loads(json.dumps(asked))))
+        key, before, now = next(differences(self.asked, _read(_written(asked))))
         shown = f"; now asked for: {now}" if len(str(now)) < LONG else ""
         said = f"the {self.kind} there is of another question{shown}"
         return InputError(self.path, key, before, f"{said}; name another folder, or ask alike")
@@ -140,6 +170,6 @@ class LineJournal:
         """Write a result; `keep` says whether `entries` holds it too."""
         if keep:
             self.entries.append(entry)
-        text = json.dumps(entry)
+        text = _written(entry)
         with naming(self.path), self.path.open("a", encoding="utf-8") as stream:
             stream.write((with_digest(text) if self.digests else text) + "\n")

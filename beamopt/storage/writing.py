@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 FORMULA = re.compile(r"'*[=+\-@\t\r]")  # also behind apostrophes: one more tells them apart
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 LINE_END = "\r\n"
 END = 1 << 14  # bytes, in which a file says what wrote it
 
@@ -184,7 +184,7 @@ def _json(value: object, indent: str, escaped: bool) -> str:
     inner = indent + " "
     if isinstance(value, dict) and value:
         items = [
-            f"{inner}{json.dumps(key, ensure_ascii=escaped)}: {_json(item, inner, escaped)}"
+            f"{inner}{_json(key, inner, escaped)}: {_json(item, inner, escaped)}"
             for key, item in value.items()
         ]
         return "{\n" + ",\n".join(items) + f"\n{indent}}}"

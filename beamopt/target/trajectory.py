@@ -14,6 +14,7 @@ from beamopt.target.target import BaseFrame, check_scale
 __all__ = ["MOST_SAMPLES", "read_path", "sampled"]
 
 MOST_SAMPLES = 10_000
+TOO_MANY = 10**12  # pieces of a side: their sum is a number still, however small the step
 
 
 def read_path(path: Path, length: float, step: float, base: BaseFrame | None = None) -> FloatArray:
@@ -62,4 +63,6 @@ def sampled(corners: FloatArray, step: float) -> FloatArray:
 def _pieces(corners: FloatArray, step: float) -> IndexArray:
     """(c − 1,) of each side; rounding makes no piece more of a whole number of steps."""
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-    return np.asarray(np.ceil(lengths / step * (1 - 1e-12)), dtype=np.int64)
+    with np.errstate(over="ignore"):
+        pieces = np.ceil(lengths / step * (1 - 1e-12))
+    return np.asarray(np.minimum(pieces, TOO_MANY), dtype=np.int64)

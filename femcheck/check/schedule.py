@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
-from beamopt.base.tasks import lost_errors
+from beamopt.base.lost_workers import lost_errors
 from femcheck.check.stage import Stage
 from femcheck.continuation.limits import Limits
 from femcheck.continuation.pressure_tree import Node, all_nodes, ancestors, prediction

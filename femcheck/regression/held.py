@@ -73,14 +73,14 @@ class Held:
         return self.rung, self.resolution, self.quantity
 
     @property
-    def decimals(self) -> int:
-        """Decimals that its tolerance leaves a meaning to, and two more."""
+    def decimals(self) -> int | None:
+        """Decimals that its tolerance leaves a meaning to, and two more; None for all of them."""
         if not 0 < self.tolerance < math.inf:
-            return 15
+            return None
         return max(0, math.ceil(-math.log10(self.tolerance)) + SPARE)
 
     def written(self) -> Held:
-        """The same with no more digits than that."""
+        """The same with no more digits than that: rounding alone never moves a row."""
         rows = {
             name: row if isinstance(row, Ended) else tuple(_round(v, self.decimals) for v in row)
             for name, row in self.rows.items()
@@ -89,8 +89,9 @@ class Held:
         return replace(self, rows=rows, tolerance=tolerance)
 
 
-def _round(value: float, decimals: int) -> float:
-    return round(float(value), decimals) + 0.0  # no "−0.0"
+def _round(value: float, decimals: int | None) -> float:
+    rounded = float(value) if decimals is None else round(float(value), decimals)
+    return rounded + 0.0  # no "−0.0"
 
 
 def is_late(row: Row | None) -> bool:

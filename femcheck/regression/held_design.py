@@ -122,5 +122,5 @@ def design_digest(design: Design) -> str:
     """Tells designs apart by all that their tips depend on; notes do not count."""
     content = json.loads(design.json())
     content.pop("notes", None)
-    text = json.dumps(content, sort_keys=True)
+    text = json.dumps(content, sort_keys=True, allow_nan=False)
     return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()

@@ -139,10 +139,13 @@ def held_limit(held: HeldDesign, *, estimate: bool) -> Iterator[Held]:
     tolerance, source = _tolerance(loads[0], loads[1] if estimate else None, ORDERS[MATERIAL])
     said = f"{source}; at least what Newton leaves"
     rung, layers, law = "solid, limit", f"{LAYERS} layers", question.law_text
-    rows = of_reply(question.pressures, replies[0])
-    yield Held(rung, layers, "endings", "", rows, 0.0, NO_NUMBERS, law)
-    late = {row: one for row, one in rows.items() if is_late(one)}
-    rows = columns(rows, loads[0]) | late
+    # the ending also where it is a tip: numbers of a solution are not the same to the last digit
+    endings: dict[str, Row] = dict(
+        zip(map(at, question.pressures), replies[0].endings, strict=True)
+    )
+    yield Held(rung, layers, "endings", "", endings, 0.0, NO_NUMBERS, law)
+    late = {row: one for row, one in endings.items() if is_late(one)}
+    rows = columns(endings, loads[0]) | late
     yield Held(rung, layers, "limit pressures", "kPa", rows, max(tolerance, least), said, law)
 
 

@@ -13,7 +13,7 @@ BOLD = re.compile(r"\*\*(.+?)\*\*")
 CODE = re.compile(r"`([^`]+)`")
 HEADING = re.compile(r"(#{1,6})\s+(.*)")
 ITEM = re.compile(r"\s*[-*]\s+(.*)")
-RULE = re.compile(r"\s*\|?(\s*:?-{3,}:?\s*\|)*\s*:?-{3,}:?\s*\|?\s*")
+RULE = re.compile(r":?-{3,}:?")  # a cell of the line below a table's head
 
 
 def to_html(text: str) -> Markup:
@@ -36,7 +36,7 @@ def _blocks(lines: list[str]) -> Iterator[Markup]:
         if heading:
             level = min(2 + len(heading[1]), 6)
             yield Markup(f"<h{level}>{{}}</h{level}>").format(_inline(heading[2]))
-        elif line.startswith("|") and place + 1 < len(lines) and RULE.fullmatch(lines[place + 1]):
+        elif line.startswith("|") and place + 1 < len(lines) and _is_rule(lines[place + 1]):
             stop = _end(lines, place, lambda one: one.startswith("|"))
             yield _table(lines[place:stop])
         elif ITEM.match(line):
@@ -82,6 +82,10 @@ def _table(lines: list[str]) -> Markup:
     return Markup(
         '<div class="scroll" tabindex="0"><table><thead>{}</thead><tbody>{}</tbody></table></div>'
     ).format(rows[0], body)
+
+
+def _is_rule(line: str) -> bool:
+    return line.startswith("|") and all(RULE.fullmatch(cell.strip()) for cell in _cells(line))
 
 
 def _cells(line: str) -> list[str]:

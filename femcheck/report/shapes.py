@@ -14,6 +14,7 @@ from beamopt.rod.arc import arc_centreline
 from beamopt.storage.input_file import MOST_MESH, check_regular
 from beamopt.target.workspace import NODES
 from femcheck.mesh.files import DISPLACEMENT, TAGS, VTU_WEDGE
+from femcheck.mesh.vtu_size import check_unpacked_size
 from femcheck.prediction.rays import rays_of
 from femcheck.report.solid_run import Combinations, SolidRun
 from femcheck.report.surface import Surface, surface_of
@@ -192,7 +193,7 @@ def _mesh(file: Path) -> Any:
 
     Raises
     ------
-    InputError : missing or damaged.
+    InputError : missing, damaged or too large.
     """
     from meshio import vtu
 
@@ -201,7 +202,10 @@ def _mesh(file: Path) -> Any:
         raise InputError(file, "", None, said)
     check_regular(file, MOST_MESH)
     try:
+        check_unpacked_size(file, MOST_MESH)
         return vtu.read(str(file))
+    except InputError:
+        raise
     except Exception as error:  # a reader of damaged bytes may fall over anything
         said = f"no whole mesh: {type(error).__name__} {error}"
         raise InputError(file, "", None, said) from None

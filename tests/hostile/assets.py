@@ -14,6 +14,8 @@ from beamopt.rod_map.sampling import METHODS
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.scene import load_scene
 from beamopt.search.optimize import optimize
+from beamopt.storage.writing import json_text
+from tests.femcheck.check.small import design_of, three_circles
 from tests.femcheck.report.folders import figure_folder
 
 SCENES = bundled_scenes()["random-section"].parent
@@ -26,6 +28,9 @@ generations = 1
 population = 4
 [section]
 feature_points = 6
+[grid]
+radial = 32
+angular = 120
 [target]
 kind = "{kind}"
 file = "{file}"
@@ -55,9 +60,14 @@ STUDY = {
 def make_assets(folder: Path) -> Path:
     """Write all of them; five seconds."""
     drawn = json.loads((SCENES / "hand_drawn_section.json").read_text())
+    drawn["grid"] |= {"radial": 32, "angular": 120}
     (folder / "drawn.json").write_text(json.dumps(drawn, indent=1))
-    sealed = json.loads((SCENES / "sealed_section.json").read_text())
-    (folder / "sealed.json").write_text(json.dumps(sealed, indent=1))
+    small = design_of(three_circles())
+    small.save(folder / "sealed.json")
+    asked = json.loads((REPORTS / "check" / "check.json").read_text())
+    (folder / "asked").mkdir()
+    (folder / "asked" / "check.json").write_text(json_text(asked | {"design": "sealed"}))
+    small.save(folder / "asked" / "design.json")
     shutil.copy(SCENES / "hand_drawn_workspace.csv", folder / "table.csv")
     (folder / "points.csv").write_text(POINTS)
     (folder / "path.csv").write_text("x,y,z\n0,0,100\n5,0,99.5\n5,5,99.5\n")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
 import subprocess
@@ -20,16 +22,22 @@ ONE_THREAD = dict.fromkeys(
 
 @dataclass(frozen=True)
 class Case:
-    """Commands on hostile input, one after another in the same folder.
+    """Commands on hostile input, one after another.
 
     make : writes files to an empty folder. codes : how each may end.
     settings : streams, environment, encoding and file_size; see `server`.
+    places : folder of each line within that of the case; that of the case itself if left out.
     """
 
     lines: list[list[str]]
     make: Callable[[Path], None]
     codes: tuple[int, ...] = (2,)
     settings: dict[str, Any] = field(default_factory=dict)
+    places: tuple[str, ...] = ()
+
+    def folders(self, folder: Path) -> list[Path]:
+        """Folder of each line."""
+        return [folder / place for place in self.places or [""] * len(self.lines)]
 
 
 class Server:
@@ -51,7 +59,7 @@ class Server:
         assert process.stdin is not None
         assert process.stdout is not None
         asked = {"lines": case.lines, **case.settings}
-        paths = {"place": str(place), "folder": str(folder)}
+        paths = {"place": str(place), "folders": [str(one) for one in case.folders(folder)]}
         process.stdin.write(json.dumps(asked | paths) + "\n")
         process.stdin.flush()
         return dict(json.loads(process.stdout.readline()))
@@ -77,8 +85,8 @@ def held(folder: Path) -> dict[str, tuple[object, ...]]:
     return found
 
 
-def check(case: Case, server: Server, place: Path) -> None:
-    """Run a case and hold it to what every command promises."""
+def check(case: Case, server: Server, place: Path) -> str:
+    """Run a case and hold it to what every command promises; its exit codes, a digit a line."""
     folder, beside = place / "here", place / "beside"
     folder.mkdir()
     beside.mkdir()
@@ -92,10 +100,31 @@ def check(case: Case, server: Server, place: Path) -> None:
     assert held(beside) == other
     for line, ended in zip(case.lines, found["lines"], strict=True):
         _check_line(line, ended, case.codes)
+    codes = "".join(str(ended["code"]) for ended in found["lines"])
     after = held(folder)
-    if all(ended["code"] == 2 for ended in found["lines"]):
-        changed = {name for name in {*before, *after} if after.get(name) != before.get(name)}
-        assert not changed, found
+    changed = {Path(name) for name in {*before, *after} if after.get(name) != before.get(name)}
+    for one, ended_there in _codes_by_folder(case, folder, codes).items():
+        here = [name for name in changed if one in name.parents]
+        assert set(ended_there) != {"2"} or not here, (here, found)
+    return codes
+
+
+def _codes_by_folder(case: Case, folder: Path, codes: str) -> dict[Path, str]:
+    by_folder: dict[Path, str] = {}
+    for one, code in zip(case.folders(folder), codes, strict=True):
+        by_folder[one] = by_folder.get(one, "") + code
+    return by_folder
+
+
+CODES = dict(csv.reader((Path(__file__).parent / "codes.csv").read_text().splitlines()))
+"""Exit codes by case, a digit for each of its lines, in their order."""
+
+
+def check_codes(name: str, codes: str) -> None:
+    """Compare a case's exit codes with those that its row in the table has."""
+    row = io.StringIO()
+    csv.writer(row, lineterminator="").writerow([name, codes])
+    assert CODES.get(name) == codes, f"codes.csv has {CODES.get(name)}; right now: {row.getvalue()}"
 
 
 def _check_line(line: list[str], ended: dict[str, Any], codes: tuple[int, ...]) -> None:

@@ -14,6 +14,8 @@ __all__ = ["CONTENTS", "NUMBERS", "PLACES", "Damage"]
 Damage = Callable[[Path], None]
 
 NUMBER = re.compile(rb"(?<![\w.\"#-])-?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?(?![\w.\"])")
+COMMENT = re.compile(rb"^# [^\n]*|(?<= )# [^\n]*", re.MULTILINE)
+STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
 
 
 def _content(change: Callable[[bytes], bytes]) -> Damage:
@@ -24,10 +26,15 @@ def _content(change: Callable[[bytes], bytes]) -> Damage:
 
 
 def _number(place: int, value: bytes) -> Damage:
-    """Put something else in the place of a number: the first or the last of the file."""
+    """Put something else in the place of a number: the first or the last of the file.
+
+    Those in the comments of a TOML file, and in the strings of a JSON file, are none.
+    """
 
     def change(content: bytes) -> bytes:
-        found = list(NUMBER.finditer(content))[place]
+        aside = STRING if content.startswith(b"{") else COMMENT
+        read = aside.sub(lambda found: b" " * len(found[0]), content)
+        found = list(NUMBER.finditer(read))[place]
         return content[: found.start()] + value + content[found.end() :]
 
     return _content(change)

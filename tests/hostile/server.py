@@ -13,15 +13,17 @@ import pkgutil
 import resource
 import signal
 import sys
+import tempfile
 import time
 import traceback
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
 CPU_SECONDS = 10
 """Processor time that a command may take: the machine's other work must not matter."""
 PATIENCE = 60.0
-"""Seconds of the clock after which a command hangs: it waits for something that never comes."""
+"""Seconds of the clock after which a line hangs: it waits for something that never comes."""
 ENDS = ("stdout", "stderr", "code")
 MEMORY = 2 * 2**30
 """Bytes of a command's largest resident set (`ru_maxrss`), which its mapped libraries belong to."""
@@ -31,9 +33,10 @@ def main() -> None:
     """Load the commands, then run cases until there are no more."""
     protocol = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
-    for package in ("beamopt.cli", "femcheck.cli"):
-        for module in pkgutil.iter_modules(importlib.import_module(package).__path__):
-            importlib.import_module(f"{package}.{module.name}")
+    for package in ("beamopt", "femcheck"):
+        path = importlib.import_module(package).__path__
+        for module in pkgutil.walk_packages(path, f"{package}."):
+            importlib.import_module(module.name)
     warm_up()
     for line in sys.stdin:
         protocol.write(json.dumps(run_case(json.loads(line))) + "\n")
@@ -41,20 +44,20 @@ def main() -> None:
 
 
 def warm_up() -> None:
-    """Load kernels and libraries that forks would load again and again."""
-    import matplotlib.figure
-    import meshio
-    import scipy.spatial  # noqa: F401
-
-    from beamopt.plot.figures import design_figure
-    from beamopt.plot.style import figure_bytes
+    """Load, and compile, what forks would load or compile again and again."""
+    from beamopt.cli.application import run as beamopt
     from beamopt.scene.bundled import bundled_scenes
-    from beamopt.scene.design import load_design
+    from femcheck.cli.application import run as femcheck
 
-    file = bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json")
-    figure_bytes(design_figure(load_design(file)), "svg", "png")
-    assert matplotlib.figure
-    assert meshio
+    design = str(bundled_scenes()["hand-drawn-section"].with_name("hand_drawn_section.json"))
+    tiny = [f"--set={key}" for key in ("search.generations=0", "search.population=2")]
+    check = str(Path(__file__).resolve().parents[2] / "reports" / "check")
+    with tempfile.TemporaryDirectory() as folder, redirect_stdout(sys.stderr):
+        out = Path(folder)
+        beamopt(["optimize", "random-section", "--out", f"{out}/run", *tiny])
+        beamopt(["show", design, "--out", f"{out}/shown.svg"])
+        beamopt(["bound", design, "--work", "0.001"])
+        femcheck(["report", check, f"{out}/run", "--out", f"{out}/report.html"])
 
 
 def run_case(case: dict[str, Any]) -> dict[str, Any]:
@@ -66,18 +69,20 @@ def run_case(case: dict[str, Any]) -> dict[str, Any]:
     child = os.fork()
     if child == 0:
         try:
-            os.chdir(case["folder"])
             os.environ.update(case.get("environment", {}))
-            for number, line in enumerate(lines):
+            for number, (folder, line) in enumerate(zip(case["folders"], lines, strict=True)):
+                os.chdir(folder)
                 code = _code_of(case, place, number, line)
                 (place / f"{number}.code").write_text(str(code))
         finally:
             os._exit(0)
-    patience, hung = time.monotonic() + PATIENCE, False
+    patience, hung, ended_lines = time.monotonic() + PATIENCE, False, 0
     while True:
         done, _, used = os.wait4(child, os.WNOHANG)
         if done:
             break
+        if (place / f"{ended_lines}.code").exists():
+            patience, ended_lines = time.monotonic() + PATIENCE, ended_lines + 1
         if time.monotonic() > patience:
             hung = True
             os.kill(child, signal.SIGKILL)

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.hostile.cases import Case, Server, check
+from tests.hostile.cases import Case, Server, check, check_codes
 from tests.hostile.damages import CONTENTS, NUMBERS, PLACES, copied
 
 ALL = {**CONTENTS, **NUMBERS, **PLACES}
 FEW = ("empty", "utf-16", "first nan", "folder", "pipe", "huge")
+SOME = (*CONTENTS, "first nan", "first list", "last 1e999", "last text", *PLACES)
+"""Numbers of each kind, where the others would each take a second of drawing."""
 
 TIPS = ["--pressures", "1,2,3"]
 RESUMED = ["--out", "run", "--resume", *(f"--set={key}" for key in ("search.generations=1",))]
@@ -51,19 +53,23 @@ reads(
 )
 reads("beamopt stability --out map --samples 1 --workers 1 --resume", "map/journal.jsonl", "map")
 reads("femcheck run sealed.json --out out", "sealed.json", "sealed.json")
-reads("femcheck run sealed.json --out check --resume", "check/check.json", "sealed.json", "check")
-reads("femcheck run sealed.json --out check --resume", "check/design.json", "sealed.json", "check")
+CHECK = "femcheck run sealed.json --out asked --resume"
+reads(CHECK, "asked/check.json", "sealed.json", "asked")
+reads(CHECK, "asked/design.json", "sealed.json", "asked")
 reads("femcheck chart disc.json --out chart --resume", "chart/journal.jsonl", "disc.json", "chart")
 reads("femcheck stability --redraw --out solids", "solids/journal.jsonl", "solids")
 REGRESS = "femcheck regress gravity --baseline baseline --meshes meshes"
 reads(REGRESS, "baseline/gravity.json", "baseline", "meshes")
-for table in ("summary.json", "check.json", "design.json", "compare.csv", "table.csv"):
+# the question of a check is not what its report reads
+reads("femcheck report check --out out.html", "check/check.json", "check", damages=("empty",))
+for table in ("summary.json", "design.json", "compare.csv", "table.csv"):
     reads("femcheck report check --out out.html", f"check/{table}", "check", damages=FEW)
 for table in ("timing.csv", "provenance.json"):
     reads("femcheck report check --out out.html", f"check/{table}", "check", damages=FEW)
-reads("femcheck report prediction --out out.html", "prediction/paths.svg", "prediction")
-reads("femcheck report prediction --out out.html", "prediction/summary.json", "prediction")
-reads("femcheck report prediction --out out.html", "prediction/limits.csv", "prediction")
+PREDICTION = "femcheck report prediction --out out.html"
+reads(PREDICTION, "prediction/paths.svg", "prediction", damages=SOME)
+reads(PREDICTION, "prediction/summary.json", "prediction", damages=SOME)
+reads(PREDICTION, "prediction/limits.csv", "prediction", damages=SOME)
 reads("femcheck report figures --out out.html", "figures/chart.svg", "figures")
 reads("femcheck report figures --out out.html", "figures/chart.csv", "figures")
 reads("femcheck report figures --out out.html", "figures/reading.md", "figures", damages=FEW)
@@ -82,29 +88,35 @@ for command in ("chart", "run --accuracy 1mm"):
 BEGINS = (
     ("map/journal.jsonl", ("empty", "half", "missing")),
     ("chart/journal.jsonl", ("empty",)),
+    ("asked/design.json", ("missing", "dangling link", "loop of links")),
     ("baseline/gravity.json", ("first minus",)),
 )
 """Damages after which a command begins, or goes on with, work that takes long, and may."""
 
-CASES = [
-    (name, damage)
-    for name, (*_, damaged, damages) in READ.items()
-    for damage in damages
-    if not any(damaged == file and damage in some for file, some in BEGINS)
-]
+
+def damages_of(name: str) -> tuple[str, ...]:
+    """Damages of a file after which the command ends soon."""
+    *_, damaged, damages = READ[name]
+    begins = [some for file, some in BEGINS if file == damaged]
+    return tuple(one for one in damages if not any(one in some for some in begins))
 
 
-@pytest.mark.parametrize(("name", "damage"), CASES, ids=[f"{b}: {a}" for a, b in CASES])
-def test_a_damaged_file(
-    name: str, damage: str, assets: Path, server: Server, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize("name", READ)
+def test_damaged_files(name: str, assets: Path, server: Server, tmp_path: Path) -> None:
+    """A folder for each damage; the file is missing where it has nothing to be damaged so."""
     program, line, files, damaged, _ = READ[name]
+    damages = damages_of(name)
 
     def make(folder: Path) -> None:
-        copied(assets, *files)(folder)
-        try:
-            ALL[damage](folder / damaged)
-        except (IndexError, UnicodeDecodeError):
-            pytest.skip("no such thing in it")
+        for damage in damages:
+            here = folder / damage
+            here.mkdir()
+            copied(assets, *files)(here)
+            try:
+                ALL[damage](here / damaged)
+            except (IndexError, UnicodeDecodeError):
+                (here / damaged).unlink()
 
-    check(Case([[program, *line.split()]], make, (0, 1, 2, 3)), server, tmp_path)
+    lines = [[program, *line.split()]] * len(damages)
+    case = Case(lines, make, (0, 1, 2, 3), places=damages)
+    check_codes(name, check(case, server, tmp_path))

@@ -10,8 +10,9 @@ import typer
 
 from beamopt.cli.application import app as beamopt
 from femcheck.cli.application import app as femcheck
-from tests.hostile.cases import Case, Server, check
+from tests.hostile.cases import CODES, Case, Server, check, check_codes
 from tests.hostile.damages import copied
+from tests.hostile.test_files import READ
 
 VALUES = (
     *("nan", "inf", "-inf", "-1", "1e999", "1e-300", "9" * 400, "9" * 5000, "0x10", "1,2,3"),
@@ -72,6 +73,11 @@ def test_every_command_has_a_line() -> None:
     assert {line for line, _, _ in parameters()} <= LINES.keys()
 
 
+def test_every_row_of_codes_is_a_case() -> None:
+    options = {f"{line} {name}" for line, name, _ in parameters()}
+    assert CODES.keys() == {"case", *options, *READ}
+
+
 def lines_of(command: str, parameter: str, place: int | None) -> list[list[str]]:
     """The usual line of the command with each value, of an option or of an argument."""
     program, name = command.split()
@@ -105,4 +111,5 @@ def test_an_option(
         (folder / "file").write_text("of somebody")
         (folder / "meshes").mkdir()
 
-    check(Case(lines_of(command, parameter, place), make, (0, 1, 2, 3)), server, tmp_path)
+    case = Case(lines_of(command, parameter, place), make, (0, 1, 2, 3))
+    check_codes(f"{command} {parameter}", check(case, server, tmp_path))

@@ -1,15 +1,19 @@
 """Journals of lines: what a kill leaves, and what is somebody else's."""
 
+import ast
 import json
+import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.base.errors import InputError
 from beamopt.storage.line_journal import LineJournal, with_digest, without_digest
+from tests.test_architecture import MODULES, name_of
 
 ASKED = {"schema": "test/1", "n": (1, 2), "text": "höhe\u2028\x85"}
 ENTRIES: list[dict[str, Any]] = [{"a": 1.5}, {"b": "zwei\u2028\x0b\nrows"}, {"c": [None, 0.1]}]
@@ -159,3 +163,40 @@ def test_reading_a_journal_changes_nothing(tmp_path: Path) -> None:
     path.write_bytes(whole)
     assert LineJournal(path, None, "test").entries == ENTRIES[:-1]
     assert path.read_bytes() == whole
+
+
+def test_numbers_that_json_does_not_have(tmp_path: Path) -> None:
+    """Strict readers take every line, and NaN and infinities come back."""
+
+    def refused(name: str) -> None:
+        raise ValueError(name)
+
+    path = tmp_path / "journal.jsonl"
+    entry = {"a": [math.nan, 1.0], "b": {"c": (math.inf, -math.inf)}, "d": np.float64("nan")}
+    one = LineJournal(path, {"most": math.inf}, "test")
+    one.add(entry)
+    for line in path.read_text().splitlines():
+        json.loads(line, parse_constant=refused)
+    again = LineJournal(path, {"most": math.inf}, "test")
+    (read,) = again.read(dict)
+    assert repr(read) == "{'a': [nan, 1.0], 'b': {'c': [inf, -inf]}, 'd': nan}"
+    assert again.asked == {"most": math.inf}
+
+
+@pytest.mark.parametrize("value", ["[]", "null", '"x"', '{"not finite": "nan"}'])
+def test_what_stands_for_no_number(value: str, tmp_path: Path) -> None:
+    path = tmp_path / "journal.jsonl"
+    text = with_digest('{"a": {"not finite": ' + value + "}}") + "\n"
+    journal(path)
+    path.write_text(path.read_text() + text)
+    with pytest.raises(InputError) as caught:
+        journal(path)
+    assert caught.value.key == "line 2"
+
+
+@pytest.mark.parametrize("file", MODULES, ids=name_of)
+def test_json_is_written_without_nan(file: Path) -> None:
+    """`json.dumps` writes NaN, which strict readers refuse, unless it is forbidden to."""
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("json.dumps", "json.dump"):
+            assert "allow_nan=False" in [ast.unparse(one) for one in node.keywords], node.lineno

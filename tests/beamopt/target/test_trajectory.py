@@ -62,6 +62,15 @@ def test_bad_paths(text: str, named: str, allowed: str, tmp_path: Path) -> None:
     assert "\n" not in said
 
 
+@pytest.mark.parametrize("step", [1e-300, 1e-18, 1e-9, 1e-3])
+def test_a_step_too_small(step: float, tmp_path: Path) -> None:
+    """More pieces than an integer holds are too many, and not none."""
+    path = tmp_path / "path.csv"
+    path.write_text("x,y,z\n0,0,100\n5,0,99.5\n5,5,99.5\n")
+    with pytest.raises(InputError, match="at most 10,000"):
+        read_path(path, 100.0, step)
+
+
 def test_a_base_frame_is_transformed_away(tmp_path: Path) -> None:
     plain = read_path(SPIRAL, 100.0, 3.0)
     corners = np.array([line.split(",") for line in SPIRAL.read_text().splitlines()[2:]], float)

@@ -83,6 +83,12 @@ def test_digits_end_a_little_below_the_tolerance() -> None:
     assert held({"a": (1 / 3,)}, tolerance=5.0).written().rows == {"a": (0.33,)}
 
 
+def test_numbers_without_a_tolerance_are_written_with_all_digits() -> None:
+    exact = held({"a": (17.8 / 3, 1e-20)}, tolerance=0.0)
+    assert exact.written().rows == exact.rows
+    assert compare("d", [exact.written()], MeasuredPart((exact,))) == []
+
+
 def test_a_reply_is_a_row_a_combination() -> None:
     reply = Reply(np.array([[0, 0, 1.0], [np.nan] * 3]), (FOUND, BUCKLED))
     rows = of_reply(np.array([[0, 5.0, 0], [1e-3, 0, 100]]), reply)

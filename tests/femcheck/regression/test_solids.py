@@ -22,7 +22,8 @@ from femcheck.regression.baseline import read_baseline
 from femcheck.regression.held import Held
 from femcheck.regression.held_design import HeldDesign, design_digest, find_design
 from femcheck.regression.kept_mesh import KeptMesher, mesh_digest, read_kept, write_section
-from femcheck.regression.measure import parts_of
+from femcheck.regression.measure import MeasuredPart, parts_of
+from femcheck.regression.moved import compare
 from femcheck.regression.regression import ContradictionError, regress, update_baseline
 from femcheck.regression.solids import LAWS, held_limit, held_solid
 from femcheck.solid.body import Body
@@ -195,6 +196,28 @@ def test_a_limit_that_came_too_late_has_no_number(
     monkeypatch.setattr(femcheck.regression.solids, "SolidModel", Late)
     endings, limits = held_limit(sealed(kept), estimate=False)
     assert set(endings.rows.values()) == set(limits.rows.values()) == {LATE}
+
+
+def test_a_pressure_that_is_reached_is_an_ending_without_numbers(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tips of another library, or of the last digit, must not move what has no tolerance."""
+
+    class Reached:
+        tip = 1 / 3
+
+        def __init__(self, layers: int) -> None:
+            pass
+
+        def reply(self, question: Question) -> Reply:
+            Reached.tip += 1e-16
+            return Reply(np.full((1, 3), Reached.tip), (FOUND,))
+
+    monkeypatch.setattr(femcheck.regression.solids, "SolidModel", Reached)
+    before = [one.written() for one in held_limit(sealed(kept), estimate=True)]
+    assert set(before[0].rows.values()) == {FOUND}
+    now = MeasuredPart(tuple(held_limit(sealed(kept), estimate=False)))
+    assert compare("disc", before, now) == []
 
 
 def test_which_parts_a_design_has(kept: Path) -> None:

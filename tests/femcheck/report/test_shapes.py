@@ -1,14 +1,20 @@
 """Shapes: surfaces, stretch, and what a page gets back of them."""
 
 import base64
+import tracemalloc
+import zlib
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 import pyvista
 
+from beamopt.base.errors import InputError
+from beamopt.storage.input_file import MOST_MESH
+from femcheck.mesh.vtu_size import check_unpacked_size
 from femcheck.report.packing import Scale, pack, stretch_range, unpack_positions
-from femcheck.report.shapes import RunShapes, read_shapes
+from femcheck.report.shapes import RunShapes, _mesh, read_shapes
 from femcheck.report.solid_run import read_solid_run
 from femcheck.report.surface import TIP, Surface, surface_of
 
@@ -153,3 +159,59 @@ def test_a_prediction_shows_answers_and_last_stable_shapes(predicted: Path) -> N
             share = shape.pressures.max() / found.pressures[row].max()
             assert shape.pressures.max() <= found.ends_at[row] + 1e-5
             np.testing.assert_allclose(shape.pressures, share * found.pressures[row], atol=1e-5)
+
+
+def written(file: Path, **options: str) -> Path:
+    """A thousand copies of one point, which pack to a thousandth."""
+    points = np.ones((100_000, 3))
+    meshio.vtu.write(file, meshio.Mesh(points, [("vertex", [[0]])]), **options)
+    return file
+
+
+@pytest.mark.parametrize("options", [{}, {"header_type": "UInt64"}, {"compression": None}])
+def test_what_unpacks_within_the_limit(options: dict[str, str], tmp_path: Path) -> None:
+    file = written(tmp_path / "a.vtu", **options)
+    check_unpacked_size(file, 2_400_100)
+    if options.get("compression", "zlib"):
+        with pytest.raises(InputError, match="unpacks to more"):
+            check_unpacked_size(file, 2_399_999)
+
+
+def test_a_small_file_that_unpacks_to_gigabytes(tmp_path: Path) -> None:
+    """One block of zeros behind a header that says another size; its memory is not taken."""
+    packer = zlib.compressobj(9)
+    zeros = bytes(2**20)
+    block = b"".join(packer.compress(zeros) for _ in range(2**11)) + packer.flush()
+    header = np.array([1, 32768, 8, len(block)], dtype=np.uint32).tobytes()
+    bomb = base64.b64encode(header).decode() + base64.b64encode(block).decode()
+    file = written(tmp_path / "a.vtu")
+    text = file.read_text()
+    start = text.index(">", text.index("<DataArray")) + 1
+    file.write_text(text[:start] + bomb + text[text.index("<", start) :])
+    tracemalloc.start()
+    with pytest.raises(InputError, match="unpacks to more"):
+        _mesh(file)
+    assert tracemalloc.get_traced_memory()[1] < MOST_MESH / 4
+    tracemalloc.stop()
+
+
+def test_other_packing_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        _mesh(written(tmp_path / "a.vtu", compression="lzma"))
+    assert caught.value.key == "compressor"
+
+
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [
+        *(("compressor", "other"), ("UInt64", "UInt16"), ("LittleEndian", "Middle")),
+        *(("AAAA", "AAA"), ("</DataArray", "<"), ("</", "\0</"), ("binary", "appended")),
+    ],
+)
+def test_damaged_packing_is_one_line(was: str, now: str, tmp_path: Path) -> None:
+    file = written(tmp_path / "a.vtu", header_type="UInt64")
+    text = file.read_text()
+    assert was in text
+    file.write_text(text.replace(was, now, 1))
+    with pytest.raises(InputError):
+        _mesh(file)
