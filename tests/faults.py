@@ -67,7 +67,7 @@ FAULTS = (
         'ElementChoice("wedge18", _wedge18, 18, _quadrangles, 2, 4.0, 6, "ElementWedge1", True)',
         'ElementChoice("wedge18", _tetrahedra("ElementTetP1", 1), 4, _triangles, 1, 4.0, 4, '
         '"ElementTetP1", True)',
-        "tests/femcheck/solid/test_wedge18.py",
+        "tests/femcheck/solved/test_case.py",
         rung="solid, rigid-section",
     ),
     Fault(
@@ -75,7 +75,7 @@ FAULTS = (
         "femcheck.solved.case",
         "winding = wind(body, *self.wound) if self.wound else None",
         "winding = None",
-        "tests/femcheck/models/test_solid.py",
+        "tests/femcheck/solved/test_case.py",
         rung="solid, wound",
     ),
     Fault(
