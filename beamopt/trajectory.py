@@ -65,4 +65,4 @@ def _pieces(corners: FloatArray, step: float) -> IndexArray:
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     with np.errstate(over="ignore"):
         pieces = np.ceil(lengths / step * (1 - 1e-12))
-    return np.minimum(pieces, TOO_MANY).astype(np.int64)
+    return np.asarray(np.minimum(pieces, TOO_MANY), dtype=np.int64)
