@@ -13,10 +13,13 @@ import subprocess
 import sys
 import venv
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
 from textwrap import indent
+from types import ModuleType
 
 import pytest
+from numba.core.caching import UserProvidedCacheLocator
 
 import beamopt
 import femcheck
@@ -78,7 +81,28 @@ def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
         wheel.extractall(packages)
     others = [*site.getsitepackages(), site.getusersitepackages()]
     (packages / "dependencies.pth").write_text("\n".join(others))
+    take_kernels(packages)
     return place / "venv" / "bin" / "python"
+
+
+def take_kernels(packages: Path) -> None:
+    """Copy this checkout's compiled kernels to where the same sources in `packages` look for them.
+
+    Numba names a folder of kernels by the path of the modules. Kernels that are not there are
+    compiled.
+    """
+    for room in {path.parent for face in (beamopt, femcheck) for path in modules_of(face)}:
+        here, there = (
+            UserProvidedCacheLocator.get_suitable_cache_subpath(str(folder / "any.py"))
+            for folder in (room, packages / room.relative_to(ROOT))
+        )
+        for kernels in (ROOT / "beamopt" / "__pycache__").glob(f"kernels-*/{here}"):
+            copy = packages / kernels.relative_to(ROOT).with_name(there)
+            shutil.copytree(kernels, copy)
+
+
+def modules_of(face: ModuleType) -> Iterable[Path]:
+    return Path(str(face.__file__)).parent.rglob("*.py")
 
 
 def test_the_script_runs_from_the_wheel(python: Path, tmp_path: Path) -> None:

@@ -9,34 +9,13 @@ from typing import Annotated
 import typer
 
 from beamopt.cli.endings import finish
+from beamopt.cli.options import Resume, Workers, new_program
 
 __all__ = ["app", "run"]
 
-app = typer.Typer(
-    name="beamopt",
-    help="Find the cross-section of a soft pneumatic actuator for a target workspace.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
+app = new_program(
+    "beamopt", "Find the cross-section of a soft pneumatic actuator for a target workspace."
 )
-
-
-def _version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"beamopt {version('beamopt')}")
-        raise typer.Exit
-
-
-@app.callback()
-def about(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
-    """Find the cross-section of a soft pneumatic actuator for a target workspace."""
-
 
 SceneName = Annotated[str, typer.Argument(help="Scene file, or the name of a bundled scene.")]
 DesignName = Annotated[
@@ -46,8 +25,6 @@ DesignName = Annotated[
     ),
 ]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed; replaces the scene's.")]
-Workers = Annotated[int, typer.Option(min=1, max=256, help="Sections judged at once.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
 Overrides = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a key, as search.generations=20."),
@@ -95,8 +72,8 @@ def study(
     out: Annotated[Path, typer.Option(help="Folder of the study.")],
     iterations: Annotated[int, typer.Option(min=1, max=1000, help="Runs of each kind.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first iteration.")] = 0,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Searches at once.")] = 1,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study there.")] = False,
+    workers: Workers = 1,
+    resume: Resume = False,
     target: Annotated[
         list[str] | None, typer.Option(help="Bundled scene, repeated; the paper's three.")
     ] = None,
@@ -214,7 +191,10 @@ def export(
 @app.command()
 def bound(
     subject: Annotated[
-        str, typer.Argument(metavar="TARGET|SCENE", help="Scene, table (.csv) or design (.json).")
+        str,
+        typer.Argument(
+            metavar="TARGET|SCENE|RUN", help="Scene, run folder, table (.csv) or design (.json)."
+        ),
     ],
     out: Annotated[
         Path | None, typer.Option(help="Folder for numbers, ideal tips and figures.")
@@ -253,9 +233,9 @@ def stability(
     samples: Annotated[
         int, typer.Option(min=1, max=1_000_000, help="Random sections under random loads.")
     ] = 1000,
-    workers: Annotated[int, typer.Option(min=1, max=256, help="Processes.")] = 2,
+    workers: Workers = 2,
     seed: Annotated[int, typer.Option(min=0, help="Seed of sections and loads.")] = 0,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the map there.")] = False,
+    resume: Resume = False,
 ) -> None:
     """Map where each method for rods under loads is right, wrong, or gives up."""
     from beamopt.cli.stability import stability_command

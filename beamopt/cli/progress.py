@@ -9,11 +9,19 @@ from contextlib import contextmanager, nullcontext
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-__all__ = ["console", "progress_bar", "work_progress"]
+from beamopt.base.provenance import thread_settings
+
+__all__ = ["console", "progress_bar", "say_workers", "work_progress"]
 
 EVERY = 10.0  # s between two lines where there is no terminal
 
 console = Console(highlight=False)
+
+
+def say_workers(workers: int) -> None:
+    """Print how many tasks are worked on at once, and the threads of each."""
+    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
+    console.print(f"{workers} at once, {threads}", soft_wrap=True)
 
 
 def progress_bar(unit: str) -> Progress:

@@ -134,6 +134,7 @@ PLAIN = {
     "int_type": "must be a whole number",
     "finite_number": "must be a finite number",
     "string_type": "must be text",
+    "bool_type": "must be true or false",
 }
 """What the checks' own wording means to a person."""
 

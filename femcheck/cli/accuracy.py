@@ -9,10 +9,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from beamopt.base.errors import InputError
-from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, progress_bar, say_workers
 from femcheck.accuracy.ending import Within, beam_difference
 from femcheck.accuracy.folder import run_accuracy
 from femcheck.accuracy.within import RungChoice
@@ -56,8 +55,7 @@ def accuracy_command(request: RunRequest, options: LawChoice) -> None:
         raise InputError("--budget", "", request.budget, "above 0 s")
     questions = _questions(request, options)
     folders = folders_of(request, [question.name for question in questions])
-    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    say_workers(request.workers)
     codes = []
     for question, folder in zip(questions, folders, strict=True):
         found = _followed(question, accuracy, rung, folder, request)

@@ -10,44 +10,20 @@ from typing import Annotated
 import typer
 
 from beamopt.cli.endings import finish
+from beamopt.cli.options import Resume, Workers, new_program
 from femcheck.cli.option_types import (
     Constants,
     Law,
     Nu,
-    Resume,
     Seal,
     Slenderness,
     Wind,
     Winding,
-    Workers,
 )
 
 __all__ = ["app", "run"]
 
-app = typer.Typer(
-    name="femcheck",
-    help="Check a section found with the beam as a solid under pressure.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-
-
-def _version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"femcheck {version('beamopt')}")
-        raise typer.Exit
-
-
-@app.callback()
-def about(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
-    """Check a section found with the beam as a solid under pressure."""
+app = new_program("femcheck", "Check a section found with the beam as a solid under pressure.")
 
 
 @app.command(name="run")
@@ -175,11 +151,12 @@ def chart_models(
     resume: Resume = False,
 ) -> None:
     """Chart error against processor time of every model: arcs, rods, solids; who is cheapest."""
-    from femcheck.cli.chart import ChartRequest, chart_command
+    from femcheck.cli.chart import chart_command
     from femcheck.cli.request import RunRequest
 
     asked = RunRequest(
         [source],
+        out,
         law=law,
         nu=nu,
         constants=constant or [],
@@ -187,8 +164,11 @@ def chart_models(
         winding=winding,
         seal=seal,
         slenderness=slenderness,
+        budget=seconds,
+        workers=workers,
+        resume=resume,
     )
-    chart_command(ChartRequest(source, out, asked, levels, family or [], seconds, workers, resume))
+    chart_command(asked, levels, family or [])
 
 
 @app.command(name="laws")
@@ -242,9 +222,9 @@ def stability_map(
     ] = False,
 ) -> None:
     """Map where actuators of silicone have an equilibrium, and where the beam is right."""
-    from femcheck.cli.stability import StabilityRequest, stability_command
+    from femcheck.cli.stability import stability_command
 
-    stability_command(StabilityRequest(out, axis or [], workers, resume, redraw))
+    stability_command(out, axis or [], workers, resume=resume, redraw=redraw)
 
 
 @app.command(name="baseline")
@@ -252,7 +232,8 @@ def write_baselines(
     designs: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[DESIGN…]", help="Design files, or names of the package's; those if left out."
+            metavar="[DESIGN|RUN|SCENE…]",
+            help="Design files, run folders, scenes, or names of the package's; those if left out.",
         ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -12,10 +11,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from beamopt.base.errors import InputError
-from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, progress_bar, say_workers
 from beamopt.scene.grid_keys import Levels
 from femcheck.chart.campaign import TimeBudget, run_chart
 from femcheck.chart.chart import ACCURACIES, Chart, seconds_text
@@ -24,38 +22,23 @@ from femcheck.cli.subjects import question_of
 from femcheck.cli.verdicts import code_of
 from femcheck.models.question import Question
 
-__all__ = ["ChartRequest", "chart_command", "levels_of"]
+__all__ = ["chart_command", "levels_of"]
 
 LEVELS: TypeAdapter[tuple[float, float, float]] = TypeAdapter(Levels)
 
 
-@dataclass(frozen=True, slots=True)
-class ChartRequest:
-    """The options as they were given."""
-
-    source: str
-    out: Path | None
-    law: RunRequest
-    levels: str | None
-    families: Sequence[str]
-    seconds: float
-    workers: int
-    resume: bool
-
-
-def chart_command(request: ChartRequest) -> None:
+def chart_command(request: RunRequest, levels: str | None, families: Sequence[str]) -> None:
     """Ask every model, show progress, and say which is the cheapest."""
-    if not request.seconds > 0:
-        raise InputError("--seconds", "", request.seconds, "above 0 s")
-    law = options_of(request.law)
-    question = question_of(request.source, request.law, law)
+    if not request.budget > 0:
+        raise InputError("--seconds", "", request.budget, "above 0 s")
+    law = options_of(request)
+    question = question_of(request.designs[0], request, law)
     say_findings(question.design)
-    if request.levels is not None:
-        changed = {"pressures": levels_of(request.levels)}
+    if levels is not None:
+        changed = {"pressures": levels_of(levels)}
         question = Question.of(question.name, question.design.model_copy(update=changed), law)
     folder = request.out or Path("charts") / question.name
-    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    say_workers(request.workers)
     started = perf_counter()
     with progress_bar("models") as bar:
         task = bar.add_task(escape(question.name), total=None, said="starting")
@@ -69,8 +52,8 @@ def chart_command(request: ChartRequest) -> None:
         chart = run_chart(
             question,
             folder,
-            families=request.families or None,
-            budget=TimeBudget(request.seconds),
+            families=families or None,
+            budget=TimeBudget(request.budget),
             workers=request.workers,
             resume=request.resume,
             progress=show,

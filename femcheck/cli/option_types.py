@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share: the material, the design, the work."""
+"""Arguments and options that several commands share: the material, the design."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ __all__ = [
     "Constants",
     "Law",
     "Nu",
-    "Resume",
     "Seal",
     "Slenderness",
     "Wind",
     "Winding",
-    "Workers",
 ]
 
 Law = Annotated[
@@ -54,5 +52,3 @@ Slenderness = Annotated[
     float | None,
     typer.Option(metavar="H/D", help="Take another length, in outer diameters; for the beam too."),
 ]
-Workers = Annotated[int, typer.Option(min=1, max=256, help="Processes at once.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the results in the folder.")]

@@ -10,10 +10,9 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, progress_bar, say_workers
 from beamopt.storage.writing import check_replaceable, csv_text, write_atomic
 from femcheck.cli.verdicts import code_of
 from femcheck.continuation.ended import Ended
@@ -143,8 +142,7 @@ def _cells(one: Moved) -> tuple[object, ...]:
 
 
 def _say_threads(workers: int) -> None:
-    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"{workers} at once, {threads}", soft_wrap=True)
+    say_workers(workers)
 
 
 class _Shown:

@@ -10,10 +10,9 @@ import numpy as np
 from rich.markup import escape
 
 from beamopt.base.errors import InputError
-from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, progress_bar, say_workers
 from femcheck.check.check_design import check_design
 from femcheck.check.options import CheckOptions
 from femcheck.cli.prediction import report_prediction
@@ -51,8 +50,7 @@ def run_command(request: RunRequest) -> None:
         say_findings(subject.design, subject.name if len(subjects) > 1 else "")
         with CheckFolder.open(folder, subject, options.question, resume=request.resume):
             pass
-    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    say_workers(request.workers)
     codes = []
     for subject, folder in zip(subjects, folders, strict=True):
         if isinstance(options, CheckOptions):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -12,53 +11,42 @@ from rich.markup import escape
 from rich.table import Table
 
 from beamopt.base.errors import InputError
-from beamopt.base.provenance import thread_settings
 from beamopt.cli.exit_codes import end_with
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, progress_bar, say_workers
 from femcheck.cli.verdicts import code_of
 from femcheck.stability.axes import AXES
 from femcheck.stability.found import AxisFound, agreement_of
 from femcheck.stability.stability_map import redraw_map, run_map
 from femcheck.stability.work import Key, Result
 
-__all__ = ["StabilityRequest", "stability_command"]
+__all__ = ["stability_command"]
 
 LINES = 40  # of progress, where there is no terminal to draw a bar on
 
 
-@dataclass(frozen=True, slots=True)
-class StabilityRequest:
-    """The options as they were given."""
-
-    out: Path
-    axes: list[str]
-    workers: int
-    resume: bool
-    redraw: bool
-
-
-def stability_command(request: StabilityRequest) -> None:
+def stability_command(
+    out: Path, axes: Sequence[str], workers: int, *, resume: bool, redraw: bool
+) -> None:
     """Make the map or draw it again, show progress, and print how cells and lines agree."""
-    _check(request)
-    found = redraw_map(request.out, AXES) if request.redraw else _computed(request)
+    _check(axes, redraw)
+    found = redraw_map(out, AXES) if redraw else _computed(out, axes, workers, resume)
     _report(found)
-    files = f"files: {request.out}/ (reading.md, stability.png, …)"
+    files = f"files: {out}/ (reading.md, stability.png, …)"
     console.print(files, soft_wrap=True, markup=False)
     end_with(code_of(found))
 
 
-def _check(request: StabilityRequest) -> None:
-    for name in request.axes:
+def _check(axes: Sequence[str], redraw: bool) -> None:
+    for name in axes:
         if name not in AXES:
             raise InputError("--axis", "", name, f"one of {', '.join(AXES)}")
-        if request.redraw:
+        if redraw:
             raise InputError("--axis", "", name, "--redraw draws all that is there")
 
 
-def _computed(request: StabilityRequest) -> list[AxisFound]:
+def _computed(out: Path, axes: Sequence[str], workers: int, resume: bool) -> list[AxisFound]:
     """Solve with a bar; without a terminal a line now and then, with the time that is left."""
-    threads = " ".join(f"{key}={value}" for key, value in thread_settings().items())
-    console.print(f"{request.workers} at once, {threads}", soft_wrap=True)
+    say_workers(workers)
     started, first = perf_counter(), 0
     with progress_bar("tasks") as bar:
         task = bar.add_task("map", total=None, said="starting")
@@ -76,15 +64,15 @@ def _computed(request: StabilityRequest) -> list[AxisFound]:
 
         try:
             return run_map(
-                request.out,
+                out,
                 AXES,
-                wanted=request.axes or None,
-                workers=request.workers,
-                resume=request.resume,
+                wanted=axes or None,
+                workers=workers,
+                resume=resume,
                 progress=show,
             )
         except KeyboardInterrupt:
-            said = f"{request.out}: the same with --resume goes on where it was"
+            said = f"{out}: the same with --resume goes on where it was"
             console.print(said, soft_wrap=True, markup=False)
             raise
 

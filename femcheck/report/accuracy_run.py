@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from beamopt.storage.input_file import read_text
-from femcheck.report.content import Record, ReportTable, read_record, read_table
+from femcheck.report.content import ReportTable, read_table
 from femcheck.report.embedding import Download, download
+from femcheck.report.summaries import AccuracySummary, ProvenanceKeys, read_keys
 from femcheck.report.wording import Badge, duration, number
 
 __all__ = ["AccuracyRun", "AccuracyView", "TipRow", "accuracy_view", "read_accuracy_run"]
@@ -26,8 +26,8 @@ class AccuracyRun:
     """
 
     folder: Path
-    summary: Record
-    provenance: Record
+    summary: AccuracySummary
+    provenance: ProvenanceKeys
     tips: ReportTable
     tried: ReportTable
     timing: ReportTable
@@ -36,12 +36,12 @@ class AccuracyRun:
     @property
     def name(self) -> str:
         """Of the design."""
-        return self.summary.text("design")
+        return self.summary.design
 
     @property
     def badge(self) -> Badge:
         """Whether the accuracy was reached."""
-        reached = self.summary.flag("reached")
+        reached = self.summary.reached
         return Badge("reached" if reached else "not reached", "good" if reached else "bad")
 
     @property
@@ -57,12 +57,7 @@ def read_accuracy_run(folder: Path) -> AccuracyRun:
     ------
     InputError : the first file that is missing or damaged.
     """
-    summary = read_record(folder / "summary.json")
-    for key in ("design", "law", "ending", "chosen", "reason"):
-        summary.text(key)
-    summary.flag("reached")
-    summary.number("accuracy_mm")
-    summary.number_or_nan("worst_estimate_mm")
+    summary = read_keys(AccuracySummary, folder / "summary.json")
     tips, tried, timing = (
         read_table(folder / name) for name in ("tips.csv", "tried.csv", "timing.csv")
     )
@@ -73,7 +68,7 @@ def read_accuracy_run(folder: Path) -> AccuracyRun:
     return AccuracyRun(
         folder,
         summary,
-        read_record(folder / "provenance.json"),
+        read_keys(ProvenanceKeys, folder / "provenance.json"),
         tips,
         tried,
         timing,
@@ -108,18 +103,18 @@ class AccuracyView:
 def accuracy_view(run: AccuracyRun, anchor: str) -> AccuracyView:
     """An answer to an accuracy."""
     summary = run.summary
-    asked = f"{number(summary.number('accuracy_mm'))} mm"
+    asked = f"{number(summary.accuracy_mm)} mm"
     return AccuracyView(
         anchor,
         f"Tips to {asked}",
         run.badge,
-        summary.text("ending"),
+        summary.ending,
         _reason(summary),
         (
-            ("law", summary.text("law")),
+            ("law", summary.law),
             ("accuracy asked for", asked),
-            ("largest estimate", _estimate(summary)),
-            ("answered by", summary.text("chosen")),
+            ("largest estimate", _estimate(summary.worst_estimate_mm)),
+            ("answered by", summary.chosen),
             ("processor time", duration(run.seconds)),
         ),
         tuple(_rows(run.tips)),
@@ -131,19 +126,17 @@ def accuracy_view(run: AccuracyRun, anchor: str) -> AccuracyView:
     )
 
 
-def _estimate(summary: Record) -> str:
-    worst = summary.number_or_nan("worst_estimate_mm")
-    return "none" if math.isnan(worst) else f"{number(worst)} mm"
+def _estimate(worst: float | None) -> str:
+    return "none" if worst is None else f"{number(worst)} mm"
 
 
-def _reason(summary: Record) -> str:
+def _reason(summary: AccuracySummary) -> str:
     """Why this rung; what the error is estimated from, where the folder says it."""
-    reason = summary.text("reason")
-    if not summary.has("estimate_is"):
-        return reason
-    others = ", ".join(map(str, summary.list("compared_with")))
-    against = f" ({summary.text('chosen')} against {others})" if others else ""
-    return f"{reason}. Error: {summary.text('estimate_is')}{against}."
+    if summary.estimate_is is None:
+        return summary.reason
+    others = ", ".join(map(str, summary.compared_with))
+    against = f" ({summary.chosen} against {others})" if others else ""
+    return f"{summary.reason}. Error: {summary.estimate_is}{against}."
 
 
 def _rows(tips: ReportTable) -> Iterator[TipRow]:

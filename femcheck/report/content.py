@@ -1,4 +1,4 @@
-"""What files hold, taken key by key: what is missing or of another kind is said by its place."""
+"""Tables of results, read back column by column."""
 
 from __future__ import annotations
 
@@ -7,90 +7,15 @@ import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
-from beamopt.storage.input_file import read_json, read_text
+from beamopt.storage.input_file import read_text
 from beamopt.storage.writing import cell_text
 
-__all__ = ["Record", "ReportTable", "read_record", "read_table"]
-
-PLAIN = {str: "text", bool: "true or false", dict: "a table of keys", list: "a list"}
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    """An object of a JSON file; keys below it are named with points, "verdict.text".
-
-    file : for messages. data : the file's content.
-    """
-
-    file: Path
-    data: dict[str, Any]
-
-    def has(self, key: str) -> bool:
-        """Whether the key stands there with a value that is not null."""
-        found: Any = self.data
-        for step in key.split("."):
-            if not isinstance(found, dict) or found.get(step) is None:
-                return False
-            found = found[step]
-        return True
-
-    def text(self, key: str) -> str:
-        """A text.
-
-        Raises
-        ------
-        InputError : missing, or no text; likewise below.
-        """
-        return str(self._kind(key, str))
-
-    def flag(self, key: str) -> bool:
-        """True or false."""
-        return bool(self._kind(key, bool))
-
-    def list(self, key: str) -> list[Any]:
-        """A list of anything."""
-        return list(self._kind(key, list))
-
-    def table(self, key: str) -> dict[str, Any]:
-        """A table of keys."""
-        return dict(self._kind(key, dict))
-
-    def number(self, key: str) -> float:
-        """A finite number."""
-        value = self._value(key)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InputError(self.file, key, value, "must be a number")
-        try:
-            number = float(value)
-        except OverflowError:  # a whole number beyond every float
-            number = math.inf
-        if not math.isfinite(number):
-            raise InputError(self.file, key, value, "must be a finite number")
-        return number
-
-    def number_or_nan(self, key: str) -> float:
-        """A finite number; NaN where it is null or not there."""
-        return self.number(key) if self.has(key) else math.nan
-
-    def _kind(self, key: str, kind: type) -> Any:
-        value = self._value(key)
-        if not isinstance(value, kind):
-            raise InputError(self.file, key, value, f"must be {PLAIN[kind]}")
-        return value
-
-    def _value(self, key: str) -> Any:
-        found: Any = self.data
-        for step in key.split("."):
-            if not isinstance(found, dict) or step not in found:
-                raise InputError(self.file, key, None, "must be given (is the file whole?)")
-            found = found[step]
-        return found
+__all__ = ["ReportTable", "read_table"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,16 +72,6 @@ class ReportTable:
         kept = [keep == value for keep in self.column(name)]
         rows = tuple(row for row, keep in zip(self.rows, kept, strict=True) if keep)
         return ReportTable(self.file, self.header, rows, self.text)
-
-
-def read_record(path: Path) -> Record:
-    """The object in a JSON file.
-
-    Raises
-    ------
-    InputError : missing, cut off, or no object.
-    """
-    return Record(path, read_json(path))
 
 
 def read_table(path: Path) -> ReportTable:

@@ -108,10 +108,10 @@ def _facts(run: SolidRun) -> Iterator[tuple[str, str]]:
     yield "length", f"{actuator.length:g} mm, {run.subject.slenderness:.3g} outer diameters"
     yield "Young's modulus", f"{actuator.youngs_modulus:g} kPa"
     yield "pressures", ", ".join(f"{level:g}" for level in design.pressures) + " kPa"
-    chambers = " + ".join(str(count) for count in summary.list("section.chambers"))
+    chambers = " + ".join(str(count) for count in summary.chambers)
     yield "chambers", f"{chambers}, of supplies 1, 2, 3"
-    if summary.has("mesh.thinnest_wall_mm"):
-        yield "thinnest wall", f"{number(summary.number('mesh.thinnest_wall_mm'))} mm"
+    if summary.thinnest_wall is not None:
+        yield "thinnest wall", f"{number(summary.thinnest_wall)} mm"
     for key in ("scene", "seed"):
         if key in design.notes:
             yield key, str(design.notes[key])
@@ -119,19 +119,17 @@ def _facts(run: SolidRun) -> Iterator[tuple[str, str]]:
 
 def _line(run: SolidRun, anchor: str) -> RunLine:
     summary = run.summary
-    box = (
-        f"{number(summary.number('stable_box_kpa'))} kPa" if summary.has("stable_box_kpa") else "–"
-    )
+    box = "–" if summary.stable_box is None else f"{number(summary.stable_box)} kPa"
     return RunLine(
         run.subject.name,
         anchor,
         "prediction" if run.is_prediction else "implementation",
         badge_of(run),
         (
-            summary.text("verdict.law"),
-            per_cent(summary.number("verdict.agree")),
-            per_cent(summary.number_or_nan("difference.worst_of_displacement")),
-            per_cent(summary.number_or_nan("difference.median_of_displacement")),
+            summary.law,
+            per_cent(summary.agree),
+            per_cent(summary.worst),
+            per_cent(summary.median),
             box,
             duration(run.seconds),
         ),
@@ -140,6 +138,6 @@ def _line(run: SolidRun, anchor: str) -> RunLine:
 
 def _accuracy_line(run: AccuracyRun, anchor: str) -> RunLine:
     summary = run.summary
-    law, asked = summary.text("law"), f"{number(summary.number('accuracy_mm'))} mm"
+    law, asked = summary.law, f"{number(summary.accuracy_mm)} mm"
     cells = (law, asked, "–", "–", "–", duration(run.seconds))
     return RunLine(run.name, anchor, "to an accuracy", run.badge, cells)

@@ -8,9 +8,9 @@ from typing import Any
 
 from femcheck.material.rigid_section import RigidSection
 from femcheck.report.accuracy_run import AccuracyRun
-from femcheck.report.content import Record
 from femcheck.report.other_runs import FigureRun, SearchRun
 from femcheck.report.solid_run import SolidRun
+from femcheck.report.summaries import ConstantKeys, SolidKeys
 from femcheck.report.wording import duration, flat, number
 
 __all__ = ["Origin", "origin_of"]
@@ -45,21 +45,17 @@ def _lines(run: SolidRun | AccuracyRun | SearchRun | FigureRun) -> Iterator[tupl
         yield "search", run.name
         yield "time", duration(run.seconds)
     made = run.provenance
-    rest = {key: value for key, value in made.data.items() if key not in KNOWN}
-    yield from flat(rest).items()
-    machine = made.table("machine")
+    yield from flat(made.model_extra or {}).items()
+    machine = made.machine
     yield "CPU", f"{machine.get('processor', '–')}, {machine.get('processors', '–')} processors"
     system = (str(machine[key]) for key in ("system", "architecture") if key in machine)
     yield "system", ", ".join(system)
-    yield "threads", _pairs(made, "threads", "=")
-    yield "versions", _pairs(made, "versions", " ")
+    yield "threads", _pairs(made.threads, "=")
+    yield "versions", _pairs(made.versions, " ")
 
 
-KNOWN = ("versions", "machine", "threads", "verdict")
-
-
-def _pairs(made: Record, key: str, between: str) -> str:
-    return ", ".join(f"{name}{between}{value}" for name, value in made.table(key).items())
+def _pairs(values: Mapping[str, Any], between: str) -> str:
+    return ", ".join(f"{name}{between}{value}" for name, value in values.items())
 
 
 def _solid(run: SolidRun) -> Iterator[tuple[str, str]]:
@@ -67,33 +63,24 @@ def _solid(run: SolidRun) -> Iterator[tuple[str, str]]:
     yield "design", run.subject.name
     if "seed" in design.notes:
         yield "seed of the search", str(design.notes["seed"])
-    if summary.has("material.energy"):
-        yield "energy W", summary.text("material.energy")
-        for constant in summary.list("material.constants"):
-            yield "constant", _constant(Record(summary.file, {"constant": constant}))
-        winding = summary.data["material"].get("winding")
-        yield "winding", "none" if winding is None else _winding(winding)
+    solids = summary.solids or []
+    if summary.energy is not None:
+        yield "energy W", summary.energy
+        for constant in summary.constants:
+            yield "constant", _constant(constant)
+        yield "winding", "none" if summary.winding is None else _winding(summary.winding)
     elif not run.is_prediction:
         modulus = design.actuator.youngs_modulus
-        for penalty in _penalties(summary):
+        for penalty in dict.fromkeys(one.c for one in solids if one.c is not None):
             yield "energy W", RigidSection(modulus, penalty).text
-    if summary.has("solids"):
-        for place in range(len(summary.list("solids"))):
-            yield "mesh", _mesh(Record(summary.file, {"solid": summary.list("solids")[place]}))
+    for one in solids:
+        yield "mesh", _mesh(one)
     yield "processor time", duration(run.seconds)
 
 
-def _penalties(summary: Record) -> list[float]:
-    """c of every solid, each once."""
-    solids = summary.list("solids") if summary.has("solids") else []
-    found = [Record(summary.file, {"solids": one}).number("solids.c") for one in solids]
-    return list(dict.fromkeys(found))
-
-
-def _constant(one: Record) -> str:
-    unit = one.text("constant.unit")
-    value = f"{number(one.number('constant.value'), 6)} {unit}".strip()
-    return f"{one.text('constant.name')} = {value} ({one.text('constant.source')})"
+def _constant(one: ConstantKeys) -> str:
+    value = f"{number(one.value, 6)} {one.unit}".strip()
+    return f"{one.name} = {value} ({one.source})"
 
 
 def _winding(winding: Any) -> str:
@@ -102,14 +89,11 @@ def _winding(winding: Any) -> str:
     return str(winding)
 
 
-def _mesh(one: Record) -> str:
+def _mesh(one: SolidKeys) -> str:
     """Size of a solid, in words."""
-    triangles, layers, unknowns = (
-        one.number(f"solid.{key}") for key in ("triangles", "layers", "unknowns")
-    )
-    kind = f", c = {number(one.number('solid.c'), 6)}" if one.has("solid.c") else ""
-    form = f", {one.text('solid.form')}" if one.has("solid.form") else ""
+    kind = "" if one.c is None else f", c = {number(one.c, 6)}"
+    form = "" if one.form is None else f", {one.form}"
     return (
-        f"{one.text('solid.mesh')}{kind}{form}: {triangles:.0f} triangles × {layers:.0f} layers of "
-        f"{one.text('solid.element')}, {unknowns:,.0f} unknowns; {one.text('solid.stability')}"
+        f"{one.mesh}{kind}{form}: {one.triangles:.0f} triangles × {one.layers:.0f} layers of "
+        f"{one.element}, {one.unknowns:,.0f} unknowns; {one.stability}"
     )

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from beamopt.storage.input_file import read_text
 from beamopt.storage.result_folder import design_file
-from femcheck.report.content import Record, ReportTable, read_record, read_table
+from femcheck.report.content import ReportTable, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
+from femcheck.report.summaries import ProvenanceKeys, SearchSummary, read_keys
 
 __all__ = ["FigureRun", "SearchRun", "read_figure_run", "read_search_run"]
 
@@ -24,8 +25,8 @@ class SearchRun:
     """
 
     folder: Path
-    summary: Record
-    provenance: Record
+    summary: SearchSummary
+    provenance: ProvenanceKeys
     tables: tuple[ReportTable, ...]
     figures: tuple[SavedFigure, ...]
     design_text: str
@@ -33,7 +34,7 @@ class SearchRun:
     @property
     def name(self) -> str:
         """Scene and seed."""
-        return f"{self.summary.text('scene')}, seed {self.summary.number('seed'):.0f}"
+        return f"{self.summary.scene}, seed {self.summary.seed:.0f}"
 
     @property
     def seconds(self) -> float:
@@ -53,7 +54,7 @@ class FigureRun:
     """
 
     folder: Path
-    provenance: Record
+    provenance: ProvenanceKeys
     tables: tuple[ReportTable, ...]
     figures: tuple[SavedFigure, ...]
     reading: str
@@ -61,7 +62,7 @@ class FigureRun:
     @property
     def verdict(self) -> str:
         """What it says in one sentence, if it says so."""
-        return self.provenance.text("verdict") if self.provenance.has("verdict") else ""
+        return self.provenance.verdict
 
 
 def read_search_run(folder: Path) -> SearchRun:
@@ -71,15 +72,12 @@ def read_search_run(folder: Path) -> SearchRun:
     ------
     InputError : the first file that is missing or damaged.
     """
-    summary = read_record(folder / "summary.json")
-    for key in ("status", "scene", "best.status"):
-        summary.text(key)
-    summary.number("seed")
+    summary = read_keys(SearchSummary, folder / "summary.json")
     best = design_file(folder)
     return SearchRun(
         folder,
         summary,
-        read_record(folder / "provenance.json"),
+        read_keys(ProvenanceKeys, folder / "provenance.json"),
         _tables(folder),
         read_figures(folder),
         read_text(best) if best.exists() else "",
@@ -96,7 +94,7 @@ def read_figure_run(folder: Path) -> FigureRun:
     reading = folder / "reading.md"
     return FigureRun(
         folder,
-        read_record(folder / "provenance.json"),
+        read_keys(ProvenanceKeys, folder / "provenance.json"),
         _tables(folder),
         read_figures(folder),
         read_text(reading) if reading.exists() else "",

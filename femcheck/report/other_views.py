@@ -48,9 +48,9 @@ def search_view(run: SearchRun) -> SearchView:
     """A search."""
     return SearchView(
         run.name,
-        f"ended: {run.summary.text('status')}",
+        f"ended: {run.summary.status}",
         tuple(_tiles(run)),
-        tuple(map(str, run.summary.list("warnings"))) if run.summary.has("warnings") else (),
+        tuple(map(str, run.summary.warnings)),
         tuple(
             picture(figure, figure.name, SEARCH_CAPTIONS.get(figure.name, figure.name))
             for figure in run.figures
@@ -60,18 +60,17 @@ def search_view(run: SearchRun) -> SearchView:
 
 
 def _tiles(run: SearchRun) -> Iterator[tuple[str, str]]:
-    summary = run.summary
-    if summary.has("best.L"):
-        sealed = summary.has("outline.rms_distance")
-        rms = summary.number("outline.rms_distance" if sealed else "best.rms_distance")
-        loss = summary.number("outline.L" if sealed else "best.L")
+    found = run.summary
+    if found.L is not None:
+        sealed = found.outline_rms_distance is not None
+        rms = found.outline_rms_distance if sealed else found.rms_distance
         yield "distance from the target, RMS", f"{number(rms)} mm"
-        yield "L", f"{number(loss, 4)} mm²"
-        yield "K", f"{number(summary.number('best.K'), 4)} mm²"
+        yield "L", f"{number(found.outline_loss if sealed else found.L, 4)} mm²"
+        yield "K", f"{number(found.K, 4)} mm²"
     else:
-        yield "best", summary.text("best.status")
-    if summary.has("evaluations"):
-        yield "sections judged", f"{summary.number('evaluations'):,.0f}"
+        yield "best", found.best_status
+    if found.evaluations is not None:
+        yield "sections judged", f"{found.evaluations:,.0f}"
     yield "time", duration(run.seconds)
 
 

@@ -94,14 +94,14 @@ def view_of(run: SolidRun, anchor: str) -> RunView:
     """
     found, summary = run.combinations, run.summary
     shapes = read_shapes(run)
-    law = summary.text("verdict.law")
+    law = summary.law
     question = "What the material does" if run.is_prediction else "Is the beam implemented right?"
     return RunView(
         anchor=anchor,
         heading=f"{question} Law: {law}" if question.endswith("?") else f"{question}: {law}",
         badge=badge_of(run),
-        text=summary.text("verdict.text"),
-        advice=summary.text("verdict.advice") if summary.has("verdict.advice") else "",
+        text=summary.text,
+        advice=summary.advice or "",
         notes=tuple(_notes(run)),
         tiles=tuple(_tiles(run)),
         model=None if shapes is None or found is None else _model(run, found, shapes),
@@ -118,15 +118,13 @@ def view_of(run: SolidRun, anchor: str) -> RunView:
 
 def _notes(run: SolidRun) -> Iterator[str]:
     """What a person should know about the section and its mesh."""
-    yield from map(str, run.summary.list("section.faults"))
-    if run.summary.has("mesh.notes"):
-        yield from map(str, run.summary.list("mesh.notes"))
-    if run.summary.number("section.islands") > 0:
+    summary = run.summary
+    yield from map(str, summary.faults)
+    yield from map(str, summary.mesh_notes)
+    if summary.islands > 0:
         yield "with an island the beam is not what the solid converges to"
-    if run.summary.has("sealing_moved_mm"):
-        median, worst = (
-            run.summary.number(f"sealing_moved_mm.{key}") for key in ("median", "worst")
-        )
+    median, worst = summary.sealing_median, summary.sealing_worst
+    if median is not None and worst is not None:
         yield f"sealing moved the beam's tips by {median:.2f} (median) … {worst:.2f} mm"
 
 
@@ -136,18 +134,17 @@ def _tiles(run: SolidRun) -> Iterator[tuple[str, str]]:
         return
     answered = int((found.answered & found.loaded).sum())
     yield "combinations answered", f"{answered} of {int(found.loaded.sum())}"
-    yield "worst difference", per_cent(summary.number_or_nan("difference.worst_of_displacement"))
-    yield "median difference", per_cent(summary.number_or_nan("difference.median_of_displacement"))
-    yield "tolerance asked", per_cent(summary.number("verdict.agree"))
-    if summary.has("stable_box_kpa"):
-        yield "stable box", f"{number(summary.number('stable_box_kpa'))} kPa"
-    if summary.has("safe_box.kpa"):
-        yield "advised at most", f"{number(summary.number('safe_box.kpa'))} kPa"
-    if summary.has("meshes"):
-        yield "ratio of two meshes' limits", number(summary.number_or_nan("meshes.largest_ratio"))
-    if summary.has("difference.worst_left_of_displacement"):
-        left = summary.number_or_nan("difference.worst_left_of_displacement")
-        yield "mesh and penalty leave", per_cent(left)
+    yield "worst difference", per_cent(summary.worst)
+    yield "median difference", per_cent(summary.median)
+    yield "tolerance asked", per_cent(summary.agree)
+    if summary.stable_box is not None:
+        yield "stable box", f"{number(summary.stable_box)} kPa"
+    if summary.safe_box is not None:
+        yield "advised at most", f"{number(summary.safe_box)} kPa"
+    if summary.meshes is not None:
+        yield "ratio of two meshes' limits", number(summary.largest_ratio)
+    if summary.left is not None:
+        yield "mesh and penalty leave", per_cent(summary.left)
     if np.isfinite(found.stretch).any():
         yield "largest stretch", number(float(np.nanmax(found.stretch)))
 
@@ -209,7 +206,7 @@ def _figures(run: SolidRun) -> Iterator[Picture]:
     caption = "The same seen diagonally."
     yield drawn("diagonal", diagonal_figure(found, (low, middle, high)), caption)
     if (found.answered & found.loaded).any():
-        agree = run.summary.number("verdict.agree")
+        agree = run.summary.agree
         caption = "Displacement of the tip: solid against beam."
         yield drawn("parity", parity_figure(found), caption)
         caption = "Distance between both tips as a share of the displacement."

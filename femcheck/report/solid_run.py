@@ -16,13 +16,13 @@ from beamopt.storage.input_file import read_text
 from beamopt.target.workspace import NODES
 from femcheck.continuation.ended import Ended
 from femcheck.continuation.old_wordings import ended_of
-from femcheck.report.content import Record, ReportTable, read_record, read_table
+from femcheck.report.content import ReportTable, read_table
 from femcheck.report.saved_figure import SavedFigure, read_figures
+from femcheck.report.summaries import ProvenanceKeys, SolidSummary, read_keys
 from femcheck.solved.subject import LoadedDesignError, Subject
 
 __all__ = ["Combinations", "SolidRun", "read_solid_run"]
 
-KINDS = ("implementation", "prediction")
 AXES = ("x", "y", "z")
 SAME = 1e-6  # kPa, between a table's pressures and the design's
 
@@ -93,8 +93,8 @@ class SolidRun:
     """
 
     folder: Path
-    summary: Record
-    provenance: Record
+    summary: SolidSummary
+    provenance: ProvenanceKeys
     subject: Subject
     combinations: Combinations | None
     timing: ReportTable
@@ -105,12 +105,12 @@ class SolidRun:
     @property
     def is_prediction(self) -> bool:
         """Whether a material was asked about, not the implementation."""
-        return self.summary.text("verdict.kind") == "prediction"
+        return self.summary.kind == "prediction"
 
     @property
     def is_certain(self) -> bool:
         """True if two meshes bear its verdict out; folders that do not say count as such."""
-        return not self.summary.has("verdict.certain") or self.summary.flag("verdict.certain")
+        return self.summary.certain
 
     @cached_property
     def seconds(self) -> float:
@@ -126,19 +126,17 @@ def read_solid_run(folder: Path) -> SolidRun:
     ------
     InputError : the first file that is missing or damaged, and where.
     """
-    summary = read_record(folder / "summary.json")
-    kind = summary.text("verdict.kind")
-    if kind not in KINDS:
-        raise InputError(summary.file, "verdict.kind", kind, f"one of {', '.join(KINDS)}")
-    subject = _subject(folder, summary.text("design"))
+    summary = read_keys(SolidSummary, folder / "summary.json")
+    kind = summary.kind
+    subject = _subject(folder, summary.design)
     name = "compare.csv" if kind == "prediction" else "table.csv"
     combinations = None
-    if (folder / name).exists() or summary.has("solids"):
+    if (folder / name).exists() or summary.solids is not None:
         combinations = _combinations(read_table(folder / name), subject, kind == "prediction")
     return SolidRun(
         folder,
         summary,
-        read_record(folder / "provenance.json"),
+        read_keys(ProvenanceKeys, folder / "provenance.json"),
         subject,
         combinations,
         read_table(folder / "timing.csv"),

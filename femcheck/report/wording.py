@@ -54,7 +54,7 @@ def badge_of(run: SolidRun) -> Badge:
         return Badge("no answer", "none")
     missing = int((found.loaded & ~found.answered).sum())
     unsure = "" if run.is_certain else ", uncertain"
-    if run.summary.flag("verdict.holds"):
+    if run.summary.holds:
         said = "beam holds" if run.is_prediction else "agrees"
         return Badge(said + unsure, "good" if run.is_certain else "none")
     if missing:
@@ -67,17 +67,17 @@ def meaning(ended: Ended | None) -> str:
     return "" if ended is None else MEANINGS.get(ended.status, "")
 
 
-def number(value: float, digits: int = 3) -> str:
+def number(value: float | None, digits: int = 3) -> str:
     """To so many digits; a dash where there is none."""
-    if math.isnan(value):
+    if value is None or math.isnan(value):
         return "–"
     shown = f"{value:.{digits}g}"
     return (f"{value:,.0f}" if "e+" in shown else shown).replace("-", "−")
 
 
-def per_cent(share: float) -> str:
+def per_cent(share: float | None) -> str:
     """A share as per cent."""
-    return "–" if math.isnan(share) else f"{number(100 * share)} %"
+    return "–" if share is None or math.isnan(share) else f"{number(100 * share)} %"
 
 
 def pressures_text(pressures: Any) -> str:

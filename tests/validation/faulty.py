@@ -1,4 +1,6 @@
-"""`python -m tests.validation.faulty MODULE OLD NEW TIMES ARGUMENT…`: femcheck with one fault.
+"""`python -m tests.validation.faulty MODULE OLD NEW TIMES PROGRAM ARGUMENT…`: a run with one fault.
+
+PROGRAM is femcheck or pytest.
 
 The text of a module is changed as it is imported; files stay as they are, so that compiled kernels
 are found. A fault therefore never stands in a kernel.
@@ -56,9 +58,13 @@ def main() -> None:
         sys.exit(NOT_THERE)
     if old:
         sys.meta_path.insert(0, Finder(module, old, new))
+    program, sys.argv[1:] = sys.argv[5], sys.argv[6:]
+    if program == "pytest":
+        import pytest
+
+        sys.exit(pytest.main())
     from femcheck.cli import main as femcheck
 
-    sys.argv[1:] = sys.argv[5:]
     femcheck()
 
 

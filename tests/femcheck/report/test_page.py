@@ -121,9 +121,17 @@ def test_a_reading_is_set_in_type() -> None:
     html = to_html(READING)
     assert "Left out" not in html
     assert "<h4>Part</h4>" in html
-    assert "<p>a <strong>b</strong> <code>c&lt;d&gt;</code> e</p>" in html
-    assert '<td class="">1</td><td class="number">2</td>' in html
-    assert "<ul><li>f</li><li>g h</li></ul>" in html
+    assert "<p>a <strong>b</strong> <code>c&lt;d&gt;</code>\ne</p>" in html
+    assert '<td>1</td>\n<td class="number">2</td>' in html
+    assert "<ul>\n<li>f</li>\n<li>g\nh</li>\n</ul>" in html
+
+
+@pytest.mark.parametrize(
+    "text", ["[a](http://b)", "![a](b.png)", "<script>a</script>", "<http://a.b>", "**<b>**"]
+)
+def test_a_reading_links_to_nothing(text: str) -> None:
+    html = to_html(text)
+    assert not any(tag in html for tag in ("<a", "<img", "<script", "<b>"))
 
 
 @pytest.mark.parametrize(
