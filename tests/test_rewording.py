@@ -19,11 +19,12 @@ from beamopt.rod.ladder import Rung
 from beamopt.rod.status import RodStatus
 from beamopt.rod_map.cases import CaseKind as LoadKind
 from beamopt.rod_map.cases import case_of
-from beamopt.rod_map.journal import SampleJournal as RodJournal
+from beamopt.rod_map.journal import line_of, samples_in
 from beamopt.rod_map.sampling import MethodSample, Sample
 from beamopt.rod_map.verdict import MethodVerdict, Witness
 from beamopt.scene.scene import load_scene
 from beamopt.search.optimize import optimize
+from beamopt.storage.line_journal import LineJournal
 from beamopt.storage.old_wordings import OLD_STOP_REASONS
 from femcheck.accuracy.folder import run_accuracy
 from femcheck.chart.kept import read_chart
@@ -260,17 +261,17 @@ def test_the_map_of_rods_is_read(witness: Witness, tmp_path: Path) -> None:
         MethodSample(case_of(0, 0), "modes", 4, MethodVerdict.RIGHT, RodStatus.BUCKLED, 0.5, 1.0),
     )
     sample = Sample(case_of(0, 0), witness, RodStatus.CONVERGED, 0.25, rows, 2.0)
-    RodJournal(tmp_path / "a", asked).add(sample)
+    LineJournal(tmp_path / "a", asked, "map").add(line_of(sample))
     with reworded():
-        (again,) = RodJournal(tmp_path / "a", asked).samples.values()
-        RodJournal(tmp_path / "b", asked).add(sample)
+        (again,) = samples_in(LineJournal(tmp_path / "a", asked, "map")).values()
+        LineJournal(tmp_path / "b", asked, "map").add(line_of(sample))
     assert (again.witness, again.truth) == (witness, RodStatus.CONVERGED)
     assert (again.rows[0].verdict, again.rows[0].status) == (MethodVerdict.RIGHT, RodStatus.BUCKLED)
     whole = (tmp_path / "a").read_text()
     assert (tmp_path / "b").read_text() == whole
     old = re.sub(r',"digest":"\w+"', "", whole.replace(witness.name, witness.name.lower()))
     (tmp_path / "a").write_text(old)
-    assert RodJournal(tmp_path / "a", asked).samples[0].witness is witness
+    assert samples_in(LineJournal(tmp_path / "a", asked, "map"))[0].witness is witness
 
 
 @pytest.mark.parametrize("text", OLD_STOP_REASONS)

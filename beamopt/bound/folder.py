@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
-from beamopt.base.errors import InputError
 from beamopt.base.provenance import provenance
 from beamopt.bound.certificate import Certificate
 from beamopt.bound.rays import RayBound
@@ -20,7 +19,7 @@ from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.scene.scene import Scene
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed
+from beamopt.storage.result_folder import FolderKind, check_same, claimed
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 from beamopt.target.target import Target
 
@@ -46,9 +45,7 @@ def claimed_for_bound(folder: Path, scene: Scene) -> Iterator[None]:
     with claimed(folder, KIND, resume=True):
         there = folder / MARKER
         kept = read_json(there).get("scene") if there.exists() else scene.name
-        if kept != scene.name:
-            said = f"is what is there; now asked for: {scene.name}; name another folder"
-            raise InputError(there, "scene", kept, said)
+        check_same(there, {"scene": kept}, {"scene": scene.name}, "bound")
         yield
 
 

@@ -20,7 +20,7 @@ from beamopt.outline.build import build_outline
 from beamopt.outline.ring import usual_sagitta
 from beamopt.scene.design import Design
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed
+from beamopt.storage.result_folder import FolderKind, check_same, claimed
 from beamopt.storage.writing import json_text, write_atomic
 
 __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
@@ -168,9 +168,7 @@ def _check_owner(folder: Path, name: str) -> None:
     kept = read_json(there)
     if kept.get("schema") != SCHEMA:
         raise InputError(there, "schema", kept.get("schema"), f"this version writes {SCHEMA}")
-    if kept.get("design") != name:
-        said = f"is what is there; now asked for: {name}; name another folder"
-        raise InputError(there, "design", kept.get("design"), said)
+    check_same(there, {"design": kept.get("design")}, {"design": name}, "export")
 
 
 def _contents(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from beamopt.rod.status import RodStatus
@@ -12,35 +11,24 @@ from beamopt.rod_map.sampling import MethodSample, Sample
 from beamopt.rod_map.verdict import MethodVerdict, Witness
 from beamopt.storage.line_journal import LineJournal
 
-__all__ = ["SampleJournal"]
+__all__ = ["SCHEMA", "line_of", "samples_in"]
 
 SCHEMA = "beamopt-stability/1"
 
 
-class SampleJournal:
-    """A file with a line that says what is sampled, and one a sample.
-
-    path : of the file. asked : what the samples depend on; that of a file that is there must be
-    the same.
+def samples_in(journal: LineJournal) -> dict[int, Sample]:
+    """Samples of a journal by the index of their case.
 
     Raises
     ------
-    InputError : the file that is there is another one's.
+    InputError : the journal is damaged.
     """
-
-    def __init__(self, path: Path, asked: dict[str, Any]) -> None:
-        self.path = path
-        self._lines = LineJournal(path, {"schema": SCHEMA, **asked}, "stability map")
-        read = self._lines.read(partial(_sample, asked["seed"]))
-        self.samples = {sample.case.index: sample for sample in read}
-
-    def add(self, sample: Sample) -> None:
-        """Keep a sample."""
-        self.samples[sample.case.index] = sample
-        self._lines.add(_data(sample))
+    read = journal.read(partial(_sample, journal.asked["seed"]))
+    return {sample.case.index: sample for sample in read}
 
 
-def _data(sample: Sample) -> dict[str, Any]:
+def line_of(sample: Sample) -> dict[str, Any]:
+    """A sample as a line of a journal."""
     return {
         "index": sample.case.index,
         "witness": sample.witness.name,

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from beamopt.base.errors import InputError
 from beamopt.base.tasks import Tasks
-from beamopt.rod_map.journal import SampleJournal
+from beamopt.rod_map.journal import SCHEMA, line_of, samples_in
 from beamopt.rod_map.map_report import NAMES, write_map
 from beamopt.rod_map.sampling import METHODS, Sample, solve_sample
-from beamopt.storage.campaign import Campaign
-from beamopt.storage.result_folder import FolderKind, claimed
+from beamopt.storage.campaign import Campaign, claimed_journal
+from beamopt.storage.result_folder import FolderKind
 
 __all__ = ["run_stability"]
 
@@ -46,34 +46,24 @@ def run_stability(
     InputError : `out` holds something else, or more samples, or can not be written.
     NotComputedError : the processes of some samples died; all others are done.
     """
-    with claimed(out, KIND, resume=resume):
-        journal = SampleJournal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
-        more = max(journal.samples, default=-1) + 1
+    asked = {"schema": SCHEMA, "seed": seed, "methods": list(methods)}
+    with claimed_journal(out, KIND, asked, "stability map", resume=resume) as journal:
+        known = samples_in(journal)
+        more = max(known, default=-1) + 1
         if more > samples:
             said = f"at least {more}, as the map there has; or name another folder"
             raise InputError("--samples", "", samples, said)
-        _solve(journal, range(samples), seed, workers, methods, callback)
-        ordered = [journal.samples[index] for index in range(samples)]
+        missing = {n: (seed, n, methods) for n in range(samples) if n not in known}
+
+        def store(index: int, sample: Sample) -> None:
+            known[index] = sample
+            journal.add(line_of(sample))
+            if callback is not None:
+                callback(sample, len(known))
+
+        way_out = "--resume solves samples again"
+        Campaign(workers).solve_every(Tasks(solve_sample, missing), store, way_out)
+        ordered = [known[index] for index in range(samples)]
         write_map(out, ordered, seed, figures=figures)
         journal.path.unlink()  # all of it stands in the tables
     return ordered
-
-
-def _solve(
-    journal: SampleJournal,
-    samples: Sequence[int],
-    seed: int,
-    workers: int,
-    methods: Sequence[str],
-    callback: Callable[[Sample, int], None] | None,
-) -> None:
-    """Solve the samples that the journal does not have."""
-    missing = [index for index in samples if index not in journal.samples]
-    work = Tasks(solve_sample, {index: (seed, index, methods) for index in missing})
-
-    def store(_: int, sample: Sample) -> None:
-        journal.add(sample)
-        if callback is not None:
-            callback(sample, len(journal.samples))
-
-    Campaign(workers).solve_every(work, store, "--resume solves samples again")

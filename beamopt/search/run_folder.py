@@ -30,7 +30,7 @@ from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
 from beamopt.search.result import Optimisation
 from beamopt.search.run_summary import summary
 from beamopt.storage.input_file import read_bytes, read_json
-from beamopt.storage.result_folder import FolderKind, claimed, differences
+from beamopt.storage.result_folder import FolderKind, check_same, claimed
 from beamopt.storage.timing import read_times, write_times
 from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 from beamopt.target.point_table import aim_csv
@@ -122,8 +122,7 @@ class RunFolder:
         if old["target"]["file"] is not None:
             old["target"]["file"] = Path(old["target"]["file"]).name
         old["target"]["paths"] = tuple(Path(path).name for path in old["target"]["paths"])
-        for key, before, now in differences(old, new, GOES_ON):
-            raise InputError(there, key, before, f"the run to go on with; now asked for: {now}")
+        check_same(there, old, new, "search", GOES_ON)
         for name, content in sources.items():
             kept = self.path / name
             if kept.exists() and read_bytes(kept) != content:

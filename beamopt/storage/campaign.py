@@ -55,7 +55,7 @@ class Campaign:
     def solve(
         self,
         work: Work[Key, Result],
-        store: Callable[[Key, Result], None],
+        store: Callable[[Key, Result], None] | None = None,
         text: Callable[[Key, Result], str] | None = None,
     ) -> None:
         """Do the tasks that have no result yet.
@@ -65,7 +65,8 @@ class Campaign:
         """
 
         def finish(key: Key, result: Result) -> None:
-            store(key, result)
+            if store is not None:
+                store(key, result)
             if text is not None:
                 self._report(work, text(key, result))
 

@@ -17,14 +17,13 @@ from typing import Any, TypeVar
 
 from beamopt.base.errors import InputError
 from beamopt.storage.input_file import check_regular
-from beamopt.storage.result_folder import differences
+from beamopt.storage.result_folder import check_same
 from beamopt.storage.writing import naming, refuse_link, write_atomic
 
 __all__ = ["LineJournal", "with_digest", "without_digest"]
 
 T = TypeVar("T")
 
-LONG = 60  # letters of a value that is not shown
 SEALED = re.compile(r'(\{.+),"digest":"([0-9a-f]{16})"\}', re.DOTALL)
 
 
@@ -116,8 +115,8 @@ class LineJournal:
             return
         self.digests = SEALED.fullmatch(whole[0][:-1].decode(errors="replace")) is not None
         self.asked = self._object(1, whole[0])
-        if asked is not None and self.asked != _read(_written(asked)):
-            raise self._other(asked)
+        if asked is not None:
+            check_same(path, self.asked, _read(_written(asked)), kind)
         self.entries = [self._object(number, line) for number, line in enumerate(whole[1:], 2)]
         if asked is not None and len(whole) < len(lines):  # a kill left half a line
             with path.open("r+b") as stream:
@@ -136,12 +135,6 @@ class LineJournal:
         if "digest" in found:  # of a line whose digest can not be read
             raise self.damaged(number)
         return found
-
-    def _other(self, asked: dict[str, Any]) -> InputError:
-        key, before, now = next(differences(self.asked, _read(_written(asked))))
-        shown = f"; now asked for: {now}" if len(str(now)) < LONG else ""
-        said = f"the {self.kind} there is of another question{shown}"
-        return InputError(self.path, key, before, f"{said}; name another folder, or ask alike")
 
     def damaged(self, number: int) -> InputError:
         """Return the error to raise where line `number`, from 1, can not be read."""

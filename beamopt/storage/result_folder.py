@@ -21,6 +21,7 @@ from beamopt.storage.writing import refuse_link
 __all__ = [
     "LOCK",
     "FolderKind",
+    "check_same",
     "claimed",
     "clear_leftovers",
     "design_file",
@@ -34,6 +35,8 @@ LOCK = ".beamopt.lock"
 HEAD = 80  # bytes of a marker, which are enough to tell it
 
 LEFTOVER = re.compile(r"\..+\.\d+\.tmp")  # what a kill leaves of `write_atomic`
+
+LONG = 60  # letters of a value that is not shown
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 """Errors that another folder on the same disk would not mend."""
@@ -196,6 +199,21 @@ def design_file(path: Path) -> Path:
         return path
     refined = path / "refined.json"
     return refined if refined.exists() else path / "best.json"
+
+
+def check_same(file: Path, before: Any, now: Any, subject: str, free: Collection[str] = ()) -> None:
+    """Refuse to go on with a result of other settings.
+
+    file : where they stand. subject : what they are of, for people. free : see `differences`.
+
+    Raises
+    ------
+    InputError : names the first key that differs, and both values where they are short.
+    """
+    for key, old, new in differences(before, now, free):
+        shown = f"; now asked for: {new}" if len(str(new)) < LONG else ""
+        said = f"the {subject} there is of another question{shown}"
+        raise InputError(file, key, old, f"{said}; name another folder, or ask alike")
 
 
 def differences(

@@ -18,7 +18,13 @@ from beamopt.search.stopping import StopReason
 from beamopt.storage.campaign import Campaign
 from beamopt.storage.checked_keys import CheckedKeys, Count, parse, quantity
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, own_subfolder
+from beamopt.storage.result_folder import (
+    FolderKind,
+    check_same,
+    claimed,
+    clear_leftovers,
+    own_subfolder,
+)
 from beamopt.storage.timing import read_times
 from beamopt.storage.writing import json_text, refuse_link, write_changed
 from beamopt.study.plan import TARGETS, Plan, Run
@@ -161,10 +167,7 @@ def _prepare(folder: Path, plan: Plan) -> None:
 
 def _check_same(there: Path, asked: StudyFile) -> None:
     old = parse(StudyFile, read_json(there), there)
-    for key in ("seed", "overrides", "targets", "refine"):
-        before, now = getattr(old, key), getattr(asked, key)
-        if before != now:
-            raise InputError(there, key, before, f"the study there; now asked for: {now}")
+    check_same(there, old.model_dump(), asked.model_dump(), "study", {"iterations"})
     if old.iterations > asked.iterations:
         allowed = "a study can be given more iterations, not fewer"
         raise InputError(there, "iterations", old.iterations, allowed)

@@ -6,14 +6,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from femcheck.check.schedule import Key
 from femcheck.continuation.outcome import SolidOutcome, Statistics, Status
 from femcheck.continuation.shape import Shapes
 from femcheck.solid.state import State
 from femcheck.solved.case import CaseResult
-from femcheck.solved.store import read_arrays, write_arrays
+from femcheck.solved.store import read_solved, write_solved
 
 __all__ = ["case_file", "read_case", "write_case"]
 
@@ -27,42 +25,31 @@ def case_file(folder: Path, key: Key) -> Path:
 def write_case(folder: Path, key: Key, result: CaseResult, digest: str) -> None:
     """Keep a result of the solid that `digest` tells from others."""
     outcome = result.outcome
-    spent = outcome.statistics
-    arrays = {
-        "digest": np.array(digest),
-        "status": np.array(outcome.status.name),
-        "reached": np.array(outcome.reached),
-        "residual": np.array(outcome.residual),
-        "negative": np.array(
-            -1 if outcome.negative_eigenvalues is None else outcome.negative_eigenvalues
-        ),
-        "counts": np.array([spent.steps, spent.iterations]),
-        "seconds": np.array(
-            [spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds]
-        ),
+    negative = outcome.negative_eigenvalues
+    values = {
+        "reached": outcome.reached,
+        "residual": outcome.residual,
+        "negative": -1 if negative is None else negative,
     }
+    states: dict[str, Any] = {}
     if outcome.state is not None and result.volumes is not None:
-        arrays |= {
+        states = {
             "x": outcome.state.x,
             "tip": outcome.state.tip,
             "turn": outcome.state.turn,
             "volumes": result.volumes,
-            "strain_energy": np.array(result.strain_energy),
+            "strain_energy": result.strain_energy,
         }
-    write_arrays(case_file(folder, key), arrays)
+    file = case_file(folder, key)
+    write_solved(file, digest, outcome.status, values, outcome.statistics, states)
 
 
 def read_case(folder: Path, key: Key, shapes: Shapes, digest: str) -> CaseResult | None:
     """A kept result; None where there is none, none that can be read, or one of another solid."""
-    return read_arrays(case_file(folder, key), partial(_case, shapes, digest))
+    return read_solved(case_file(folder, key), digest, partial(_case, shapes))
 
 
-def _case(shapes: Shapes, digest: str, kept: Any) -> CaseResult | None:
-    if str(kept["digest"]) != digest:
-        return None
-    steps, iterations = kept["counts"].tolist()
-    statistics = Statistics(steps, iterations, *kept["seconds"].tolist())
-    status = Status[str(kept["status"])]
+def _case(shapes: Shapes, status: Status, spent: Statistics, kept: Any) -> CaseResult | None:
     negative = int(kept["negative"])
     state = State(kept["x"], kept["tip"], kept["turn"]) if "x" in kept else None
     outcome = SolidOutcome(
@@ -71,7 +58,7 @@ def _case(shapes: Shapes, digest: str, kept: Any) -> CaseResult | None:
         float(kept["reached"]),
         float(kept["residual"]),
         None if negative < 0 else negative,
-        statistics,
+        spent,
     )
     if state is None:
         return None if status is Status.CONVERGED else CaseResult(outcome)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
-from contextlib import AbstractContextManager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.processes import in_process, processes
-from beamopt.base.tasks import solve_all
 from beamopt.scene.design import Design
+from beamopt.storage.campaign import Campaign
 from beamopt.target.workspace import node_index
 from femcheck.check.options import CheckOptions
 from femcheck.check.schedule import Schedule
@@ -101,8 +98,8 @@ class SolidModel:
         section = options.mesher.mesh(subject.outline, options.sizes)
         if isinstance(section, MeshFailure):
             return nothing(question, Ended.of_mesh(section))
-        pool = partial(processes if workers else in_process, max(workers, 1))
-        ask = _Solving(question, options, self, section, pool, max(workers, 1), kind)
+        campaign = Campaign(max(workers, 1), processes if workers else in_process)
+        ask = _Solving(question, options, self, section, campaign, kind)
         tips, endings = ask.rigid() if question.is_of_the_beam else ask.material()
         solid = ask.solid("size", RigidSection(1.0, 1.0))
         body = solid.body()
@@ -131,8 +128,7 @@ class _Solving:
     options: LawChoice
     model: SolidModel
     section: SectionMesh
-    pool: Callable[[], AbstractContextManager[Executor]]
-    workers: int
+    campaign: Campaign
     kind: type[Solid]
 
     @property
@@ -179,7 +175,7 @@ class _Solving:
     def _on_grid(self, low: Stage, high: Stage) -> tuple[list[CaseResult], list[CaseResult]]:
         """All 27, each predicted from its neighbours."""
         schedule = Schedule((low, high), self.design.pressures, self.options.limits)
-        solve_all(schedule, self.pool, self.workers, _keep_nothing)
+        self.campaign.solve(schedule)
         nodes = sorted(all_nodes(), key=lambda node: node_index(*node))
         first, second = (
             [schedule.results[stage.name, node] for node in nodes] for stage in (low, high)
@@ -190,7 +186,7 @@ class _Solving:
         """Each by itself, from rest."""
         pressures = self.question.pressures
         work = PointWork((low.solid, high.solid), pressures, self.options.limits)
-        solve_all(work, self.pool, self.workers, _keep_nothing)
+        self.campaign.solve(work)
         first, second = ([work.results[k, row] for row in range(len(pressures))] for k in (0, 1))
         return first, second
 
@@ -202,7 +198,7 @@ class _Solving:
         rays, places = rays_of(self.question.pressures)
         used = {place[0] for place in places if place is not None}
         work = _TipRays(solid, rays, used, options.limits)
-        solve_all(work, self.pool, self.workers, _keep_nothing)
+        self.campaign.solve(work)
         tips, endings = [], []
         for place in places:
             if place is None:
@@ -220,7 +216,3 @@ class _Solving:
         if found is not None:
             return found.tip - self.centroid, FOUND
         return np.full(3, np.nan), Ended(result.status, result.critical)
-
-
-def _keep_nothing(key: object, result: object) -> None:
-    """Replies are kept whole, not case by case."""

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from functools import partial
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from femcheck.continuation.outcome import Statistics, Status
 from femcheck.prediction.answer import Answer
 from femcheck.prediction.ray_trace import RayResult
-from femcheck.solved.store import read_arrays, write_arrays
+from femcheck.solved.store import read_solved, write_solved
 
 __all__ = ["ray_file", "read_ray", "write_ray"]
 
@@ -24,44 +21,29 @@ def ray_file(folder: Path, mesh: str, ray: str) -> Path:
 
 def write_ray(path: Path, result: RayResult, digest: str) -> None:
     """Keep a result of the question that `digest` tells from others."""
-    spent = result.statistics
-    arrays: dict[str, Any] = {
-        "digest": np.array(digest),
-        "status": np.array(result.status.name),
-        "critical": np.array(result.critical),
-        "track": result.track,
-        "growth": np.array(result.growth),
-        "snaps": np.array(result.snaps),
-        "mode_at": result.mode_at,
-        "mode_share": np.array(result.mode_share),
-        "counts": np.array([spent.steps, spent.iterations]),
-        "seconds": np.array(
-            [spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds]
-        ),
-        "there": np.array([one is not None for one in (*result.answers, result.last)]),
-    }
-    for number, answer in enumerate((*result.answers, result.last)):
+    names = ("critical", "track", "growth", "snaps", "mode_at", "mode_share")
+    values = {name: getattr(result, name) for name in names}
+    answers = (*result.answers, result.last)
+    states: dict[str, Any] = {"there": [one is not None for one in answers]}
+    for number, answer in enumerate(answers):
         if answer is not None:
             for one in fields(Answer):
-                arrays[f"{number}_{one.name}"] = np.asarray(getattr(answer, one.name))
-    write_arrays(path, arrays)
+                states[f"{number}_{one.name}"] = getattr(answer, one.name)
+    write_solved(path, digest, result.status, values, result.statistics, states)
 
 
 def read_ray(path: Path, digest: str) -> RayResult | None:
     """A kept result; None where there is none to the same question that can be read."""
-    return read_arrays(path, partial(_ray, digest))
+    return read_solved(path, digest, _ray)
 
 
-def _ray(digest: str, kept: Any) -> RayResult | None:
-    if str(kept["digest"]) != digest:
-        return None
-    steps, iterations = kept["counts"].tolist()
+def _ray(status: Status, spent: Statistics, kept: Any) -> RayResult | None:
     there = kept["there"].tolist()
     *answers, last = (_answer(kept, number) for number in range(len(there)))
     if [one is not None for one in (*answers, last)] != there:
         return None
     return RayResult(
-        Status[str(kept["status"])],
+        status,
         float(kept["critical"]),
         tuple(answers),
         last,
@@ -70,7 +52,7 @@ def _ray(digest: str, kept: Any) -> RayResult | None:
         tuple(kept["snaps"].tolist()),
         kept["mode_at"],
         float(kept["mode_share"]),
-        Statistics(steps, iterations, *kept["seconds"].tolist()),
+        spent,
     )
 
 

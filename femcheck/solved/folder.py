@@ -13,9 +13,9 @@ from beamopt.base.provenance import provenance
 from beamopt.storage.input_file import read_bytes, read_json
 from beamopt.storage.result_folder import (
     FolderKind,
+    check_same,
     claimed,
     clear_leftovers,
-    differences,
     own_subfolder,
 )
 from beamopt.storage.writing import json_text, write_atomic
@@ -63,10 +63,7 @@ class CheckFolder:
     def _begin(self, text: str, design_text: str) -> None:
         there, design = self.path / MARKER, self.path / "design.json"
         if there.exists():
-            kept = read_json(there)
-            for key, before, now in differences(kept, json.loads(text)):
-                said = f"is what is there; now asked for: {now}; name another folder, or ask alike"
-                raise InputError(there, key, before, said)
+            check_same(there, read_json(there), json.loads(text), "verdict")
             if design.exists() and read_bytes(design) != design_text.encode():
                 raise InputError(design, "", None, "differs from the design asked for now")
         write_atomic(there, text)

@@ -1,4 +1,4 @@
-"""Results on disk as arrays, with a digest of the whole file: what was damaged is never read."""
+"""Solved results on disk, with a digest of the whole file: what was damaged is never read."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ import numpy as np
 
 from beamopt.storage.input_file import MOST_MESH, read_bytes
 from beamopt.storage.writing import write_atomic
+from femcheck.continuation.outcome import Statistics, Status
 
-__all__ = ["read_arrays", "write_arrays"]
+__all__ = ["read_solved", "write_solved"]
 
 T = TypeVar("T")
 LOG = logging.getLogger(__name__)
@@ -31,27 +32,51 @@ DAMAGED = (
 )
 
 
-def write_arrays(file: Path, arrays: Mapping[str, Any]) -> None:
-    """Write arrays by name."""
+def write_solved(
+    file: Path,
+    digest: str,
+    status: Status,
+    values: Mapping[str, Any],
+    spent: Statistics,
+    states: Mapping[str, Any],
+) -> None:
+    """Write a result of the question that `digest` tells from others.
+
+    values, states : numbers and arrays by name; they stand before and after the statistics.
+    """
+    times = (spent.seconds, spent.assembly_seconds, spent.factor_seconds, spent.solve_seconds)
+    arrays = {
+        **{"digest": digest, "status": status.name},
+        **values,
+        **{"counts": (spent.steps, spent.iterations), "seconds": times},
+        **states,
+    }
     stream = io.BytesIO()
     np.savez(stream, allow_pickle=False, **arrays)
     content = stream.getvalue()
     write_atomic(file, content + MARK + _digest(content))
 
 
-def read_arrays(file: Path, convert: Callable[[Any], T | None]) -> T | None:
-    """Return what `convert` makes of the arrays in a file; None where there is no file.
+def read_solved(
+    file: Path, digest: str, convert: Callable[[Status, Statistics, Any], T | None]
+) -> T | None:
+    """Return what `convert` makes of status, statistics and arrays in a file.
 
-    A file that is damaged is None too, and logged: its result is to be computed again.
+    None where there is no file, or one of another question. A file that is damaged is None too, and
+    logged: its result is to be computed again.
     """
     try:
         if not file.exists():
             return None
-        content, mark, digest = _parts(read_bytes(file, MOST_MESH))
-        if mark and digest != _digest(content):
+        content, mark, written = _parts(read_bytes(file, MOST_MESH))
+        if mark and written != _digest(content):
             raise ValueError("the digest is of another content")
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            return convert(arrays)
+            if str(arrays["digest"]) != digest:
+                return None
+            steps, iterations = arrays["counts"].tolist()
+            spent = Statistics(steps, iterations, *arrays["seconds"].tolist())
+            return convert(Status[str(arrays["status"])], spent, arrays)
     except DAMAGED as error:
         LOG.warning("%s can not be read, its result is computed again: %s", file, error)
         return None

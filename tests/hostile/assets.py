@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from beamopt.pareto.find_front import find_front
-from beamopt.rod_map.journal import SampleJournal
+from beamopt.rod_map.journal import SCHEMA
 from beamopt.rod_map.sampling import METHODS
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.scene import load_scene
 from beamopt.search.optimize import optimize
+from beamopt.storage.line_journal import LineJournal
 from beamopt.storage.writing import json_text
 from tests.femcheck.check.small import design_of, three_circles
 from tests.femcheck.report.folders import figure_folder
@@ -84,7 +85,8 @@ def make_assets(folder: Path) -> Path:
     (folder / "study").mkdir()
     (folder / "study" / "study.json").write_text(json.dumps(STUDY))
     (folder / "map").mkdir()
-    SampleJournal(folder / "map" / "journal.jsonl", {"seed": 0, "methods": list(METHODS)})
+    asked = {"schema": SCHEMA, "seed": 0, "methods": list(METHODS)}
+    LineJournal(folder / "map" / "journal.jsonl", asked, "stability map")
     shutil.copytree(REPORTS / "check", folder / "check")
     shutil.copytree(REPORTS / "prediction", folder / "prediction")
     shutil.copytree(REPORTS / "chart" / "disc-rigid-section", folder / "chart")

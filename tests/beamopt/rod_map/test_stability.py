@@ -21,7 +21,7 @@ from beamopt.rod.rod import STRAIGHT, PointLoad, Rod, Segment
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 from beamopt.rod_map.cases import SLENDERNESSES, CaseKind, LoadedSection, RodCase, case_of, sizes_of
-from beamopt.rod_map.journal import SampleJournal
+from beamopt.rod_map.journal import SCHEMA, line_of, samples_in
 from beamopt.rod_map.map_report import ANSWERS, NAMES
 from beamopt.rod_map.reading import reading
 from beamopt.rod_map.sampling import MethodSample, Sample, solve_sample
@@ -29,6 +29,7 @@ from beamopt.rod_map.stability import JOURNAL, run_stability
 from beamopt.rod_map.summary import commonest, rates_of
 from beamopt.rod_map.truth import compared, true_equilibrium
 from beamopt.rod_map.verdict import MethodAnswer, MethodVerdict, Truth, Witness, judged
+from beamopt.storage.line_journal import LineJournal
 from tests.beamopt.rod.samples import PLANE, plain_law
 from tests.clocks import run_away
 from tests.journals import flipped
@@ -215,6 +216,10 @@ def test_workers_do_not_count(made: tuple[Path, list[Sample]], tmp_path: Path) -
     assert (tmp_path / "map" / name).read_text() == (folder / name).read_text()
 
 
+def journal_at(path: Path, seed: int = 0) -> LineJournal:
+    return LineJournal(path, {"schema": SCHEMA, "seed": seed, "methods": list(FEW)}, "map")
+
+
 def test_a_map_that_was_cut_short_is_gone_on_with(
     made: tuple[Path, list[Sample]], tmp_path: Path
 ) -> None:
@@ -222,9 +227,9 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
     folder, samples = made
     there = tmp_path / "map"
     there.mkdir()
-    journal = SampleJournal(there / JOURNAL, {"seed": 0, "methods": list(FEW)})
+    journal = journal_at(there / JOURNAL)
     for sample in samples[2:7]:
-        journal.add(sample)
+        journal.add(line_of(sample))
     with journal.path.open("a") as stream:
         stream.write('{"index": 7, "witn')
     came: list[int] = []
@@ -238,18 +243,18 @@ def test_a_map_that_was_cut_short_is_gone_on_with(
 
 
 def test_every_changed_digit_is_noticed(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
-    path, asked = tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)}
-    SampleJournal(path, asked).add(made[1][0])
+    path = tmp_path / JOURNAL
+    journal_at(path).add(line_of(made[1][0]))
     for damaged in flipped(path.read_bytes()):
         path.write_bytes(damaged)
         with pytest.raises(InputError, match=r"line [12]"):
-            SampleJournal(path, asked)
+            samples_in(journal_at(path))
 
 
 def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: Path) -> None:
-    journal = SampleJournal(tmp_path / JOURNAL, {"seed": 0, "methods": list(FEW)})
+    journal = journal_at(tmp_path / JOURNAL)
     for sample in made[1][2:7]:
-        journal.add(sample)
+        journal.add(line_of(sample))
     before = everything(tmp_path)
     with pytest.raises(InputError) as caught:
         run_stability(tmp_path, 6, methods=FEW, resume=True)
@@ -259,7 +264,7 @@ def test_a_map_never_goes_backwards(made: tuple[Path, list[Sample]], tmp_path: P
 
 def test_another_map_is_not_gone_on_with(tmp_path: Path) -> None:
     path = tmp_path / JOURNAL
-    SampleJournal(path, {"seed": 1, "methods": list(FEW)})
+    journal_at(path, seed=1)
     with pytest.raises(InputError, match="of another question"):
         run_stability(tmp_path, 1, methods=FEW, resume=True)
     path.write_text("nonsense\n")
