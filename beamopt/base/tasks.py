@@ -14,14 +14,14 @@ from typing import Any, Generic, Protocol, TypeVar
 from beamopt.base.errors import NotComputedError
 from beamopt.base.lost_workers import lost_errors
 
-__all__ = ["Tasks", "Work", "check_none_lost", "solve_all"]
+__all__ = ["Key", "Result", "Tasks", "Work", "check_none_lost", "solve_all"]
 
 Key = TypeVar("Key", bound=tuple[Any, ...] | str | int)
 Result = TypeVar("Result")
 
 
 class Work(Protocol[Key, Result]):
-    """Tasks by key, and the results so far."""
+    """Tasks by key, and the results so far; independent ones unless a class says otherwise."""
 
     results: dict[Key, Result]
 
@@ -32,11 +32,11 @@ class Work(Protocol[Key, Result]):
 
     def begin(self, executor: Executor, waiting: Sequence[Key]) -> bool:
         """Do what comes before the tasks; False where a process died of it."""
-        ...
+        return True
 
     def is_ready(self, key: Key) -> bool:
         """Whether everything that a task builds on is known."""
-        ...
+        return True
 
     def submit(self, executor: Executor, key: Key) -> Future[Result]:
         """Have a task done."""
@@ -48,8 +48,8 @@ class Work(Protocol[Key, Result]):
 
 
 @dataclass
-class Tasks(Generic[Key, Result]):
-    """Independent tasks: one function, and its arguments by key; see `Work`.
+class Tasks(Work[Key, Result | None], Generic[Key, Result]):
+    """Independent tasks: one function, and its arguments by key.
 
     A task that its process dies of twice has no result: None.
     """
@@ -62,14 +62,6 @@ class Tasks(Generic[Key, Result]):
     def keys(self) -> Sequence[Key]:
         """In the order of the arguments."""
         return list(self.arguments)
-
-    def begin(self, executor: Executor, waiting: Sequence[Key]) -> bool:
-        """Nothing comes before the tasks."""
-        return True
-
-    def is_ready(self, key: Key) -> bool:
-        """All can be begun at once."""
-        return True
 
     def submit(self, executor: Executor, key: Key) -> Future[Result | None]:
         """Have a task done."""

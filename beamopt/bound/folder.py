@@ -20,7 +20,7 @@ from beamopt.bound.ring_bound import RingBound
 from beamopt.bound.wanted import Wanted
 from beamopt.scene.scene import Scene
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.result_folder import FolderKind, claimed
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 from beamopt.target.target import Target
 
@@ -31,7 +31,7 @@ OF_RESPONSE = ("ideal.csv", "bound.svg", "bound.png")
 FILES = (*OF_RESPONSE, "timing.csv", "provenance.json")
 SCHEMA = "beamopt-bound/1"
 # those of earlier versions had no schema
-KIND = FolderKind("a bound", MARKER, ('{"schema":"beamopt-bound/', '{"scene":"'))
+KIND = FolderKind("a bound", MARKER, ('{"schema":"beamopt-bound/', '{"scene":"'), files=FILES)
 HEADER = "p1,p2,p3,x,y,z,target_x,target_y,target_z,weight,distance_mm"
 
 
@@ -66,7 +66,6 @@ def write_bound(
     Without a bound there are only `bound.json`, which says why, and the provenance; what an earlier
     one left is removed.
     """
-    clear_leftovers(folder, (MARKER, *FILES))
     wanted, response = found.wanted, found.response
     if wanted is None or response is None:
         for name in OF_RESPONSE:

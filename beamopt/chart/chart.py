@@ -23,14 +23,14 @@ from beamopt.plot.style import save_figure
 from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.solution import Method
 from beamopt.scene.scene import Scene
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.result_folder import FolderKind, claimed
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 
 __all__ = ["RodChart", "run_chart"]
 
 HEADER = "scene,method,resolution,error_mm,seconds,converged,of,status,ended"
-KIND = FolderKind("a chart of rods", "provenance.json", ("{",), goes_on=False)
-NAMES = ("chart.csv", "chart.svg", "chart.png", KIND.marker)
+FILES = ("chart.csv", "chart.svg", "chart.png")
+KIND = FolderKind("a chart of rods", "provenance.json", ("{",), goes_on=False, files=FILES)
 BOUNDS = (1e-3, 1e-6)  # mm
 
 
@@ -126,7 +126,6 @@ def _write(chart: RodChart, out: Path, seed: int | None) -> None:
         )
         for row in chart.rows
     ]
-    clear_leftovers(out, NAMES)
     write_atomic(out / "chart.csv", csv_text(HEADER, cells))
     title = f"{chart.scene}: {chart.rows[0].of} tips, {_threads()}"
     figure = error_figure(_lines(chart), chart.tolerance, chart.uncertainty, title)

@@ -191,7 +191,10 @@ def export(
 @app.command()
 def bound(
     subject: Annotated[
-        str, typer.Argument(metavar="TARGET|SCENE", help="Scene, table (.csv) or design (.json).")
+        str,
+        typer.Argument(
+            metavar="TARGET|SCENE|RUN", help="Scene, run folder, table (.csv) or design (.json)."
+        ),
     ],
     out: Annotated[
         Path | None, typer.Option(help="Folder for numbers, ideal tips and figures.")

@@ -24,6 +24,7 @@ from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console, work_progress
 from beamopt.scene.design import load_design
+from beamopt.scene.named import is_scene
 from beamopt.scene.overrides import overridden
 from beamopt.scene.scene import Pressures, Scene, load_scene
 from beamopt.scene.target_keys import TargetChoice
@@ -72,11 +73,13 @@ def bound_command(
 def _scene_of(
     subject: str, overrides: Sequence[str]
 ) -> tuple[Scene, tuple[str, ...], dict[str, Any]]:
-    """A scene; for a table or a design the default one with it as the target.
+    """A scene, also that of a run folder; for a table or a design one with it as the target.
 
     Returns it with notes on it, and what a table does not say and was assumed.
     """
     path = Path(subject)
+    if path.is_dir() and not is_scene(subject):
+        return load_scene(_kept_scene(path), overrides), (), {}
     kind = path.suffix.lower()
     if kind not in (".csv", ".json"):
         return load_scene(subject, overrides), (), {}
@@ -96,6 +99,14 @@ def _scene_of(
         target=TargetChoice(kind="section", file=str(path.resolve())),
     )
     return _with(scene, overrides), (), {}
+
+
+def _kept_scene(folder: Path) -> Path:
+    """The scene file of a run folder."""
+    file = folder / "scene.toml"
+    if not file.exists():
+        raise InputError(folder, "", None, f"no run folder: it has no {file.name}")
+    return file
 
 
 def _scene_of_table(

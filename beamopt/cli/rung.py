@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from beamopt.base.errors import InputError
 from beamopt.cli.findings import say_findings
 from beamopt.cli.progress import console
 from beamopt.rod.ladder import Rung
@@ -24,6 +25,9 @@ def rung_command(subject: str, overrides: list[str]) -> None:
 def _climb(subject: str, overrides: list[str]) -> Climb:
     if is_scene(subject):
         return load_scene(subject, overrides).climb
+    if overrides:
+        said = "of scenes alone: a design has its rod and its loads in its file"
+        raise InputError("--set", "", overrides[0], said)
     _, design = named_design(subject)
     say_findings(design)
     return design.climb

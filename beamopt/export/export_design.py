@@ -20,7 +20,7 @@ from beamopt.outline.build import build_outline
 from beamopt.outline.ring import usual_sagitta
 from beamopt.scene.design import Design
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.result_folder import FolderKind, claimed
 from beamopt.storage.writing import json_text, write_atomic
 
 __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
@@ -28,7 +28,6 @@ __all__ = ["FORMATS", "ExportOptions", "Exported", "export_design"]
 FORMATS = ("step", "stl", "svg", "dxf")
 THICKEST, COARSEST = 1000.0, 1.0  # mm
 MARKER = "export.json"
-KIND = FolderKind("an export", MARKER, ('{"schema":"beamopt-export/',))
 FILES = {
     "body.step": "step",
     "mould.step": "step",
@@ -39,6 +38,8 @@ FILES = {
 }
 """Every file that an export may write, and its format."""
 
+OWN = ("provenance.json", *FILES)
+KIND = FolderKind("an export", MARKER, ('{"schema":"beamopt-export/',), files=OWN)
 PACKAGES = ("shapely", "gmsh", "ezdxf")
 
 
@@ -212,7 +213,6 @@ def _contents(
 
 def _write(folder: Path, files: dict[str, bytes], record: str) -> None:
     """The record first: it tells the folder's owner, should the rest be interrupted."""
-    clear_leftovers(folder, (MARKER, "provenance.json", *FILES))
     write_atomic(folder / MARKER, record)
     for file, content in files.items():
         write_atomic(folder / file, content)

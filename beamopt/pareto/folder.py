@@ -15,24 +15,23 @@ from beamopt.scene.design import Design
 from beamopt.scene.scene import Scene
 from beamopt.scene.toml_text import scene_text
 from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
-from beamopt.storage.result_folder import FolderKind, clear_leftovers
+from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.timing import write_times
 from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 
 __all__ = ["KIND", "begin_folder", "write_front"]
 
-KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',))
 FIGURES = ("pareto.svg", "pareto.png")
 DESIGN = re.compile(r"front-\d{3,}\.json")
-NAMES = (
-    *(KIND.marker, "scene.toml", *SOURCES.values(), *PATHS, "front-*.json", "front.csv"),
+FILES = (
+    *("scene.toml", *SOURCES.values(), *PATHS, "front-*.json", "front.csv"),
     *("history.csv", "summary.json", *FIGURES, "timing.csv", "provenance.json"),
 )
+KIND = FolderKind("a front", "journal.jsonl", ('{"schema":"beamopt-pareto/',), files=FILES)
 
 
 def begin_folder(folder: Path, scene: Scene) -> None:
     """Keep the question beside the journal: the scene, and copies of its target's files."""
-    clear_leftovers(folder, NAMES)
     kept, sources = scene_to_keep(scene)
     for name, content in sources.items():
         write_changed(folder / name, content)

@@ -16,7 +16,7 @@ from beamopt.refine.refine_design import Refinement
 from beamopt.scene.design import load_design
 from beamopt.scene.scene import Scene
 from beamopt.storage.input_file import read_text
-from beamopt.storage.result_folder import FolderKind, clear_leftovers
+from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 from beamopt.target.target import Target
 
@@ -41,7 +41,8 @@ REFINEMENT_FILES = (
 )
 """Every file that `write_refinement` writes."""
 
-KIND = FolderKind("a refinement", "provenance.json", ("{",), goes_on=False)
+OWN = (*REFINEMENT_FILES, "summary.json", "timing.csv")
+KIND = FolderKind("a refinement", "provenance.json", ("{",), goes_on=False, files=OWN)
 """Folder of a refinement that is not a search's."""
 
 
@@ -81,7 +82,6 @@ def write_refinement(
 
 def write_refined_design(folder: Path, scene: Scene, target: Target, found: Refinement) -> None:
     """The same with a summary, for a refinement that is not a search's: a folder of its own."""
-    clear_leftovers(folder, (*REFINEMENT_FILES, "summary.json", "timing.csv", "provenance.json"))
     write_refinement(folder, scene, target, found)
     numbers = {"scene": scene.name, "seed": scene.search.seed, **refinement_numbers(found, scene)}
     write_atomic(folder / "summary.json", json_text(numbers))

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 
 from beamopt.base.errors import InputError
-from beamopt.base.processes import in_process, processes
-from beamopt.base.tasks import Tasks, check_none_lost, solve_all
+from beamopt.base.tasks import Tasks
 from beamopt.rod_map.journal import SampleJournal
 from beamopt.rod_map.map_report import NAMES, write_map
 from beamopt.rod_map.sampling import METHODS, Sample, solve_sample
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.campaign import Campaign
+from beamopt.storage.result_folder import FolderKind, claimed
 
 __all__ = ["run_stability"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("a stability map of rods", JOURNAL, ('{"schema":"beamopt-stability/',))
+KIND = FolderKind(
+    "a stability map of rods", JOURNAL, ('{"schema":"beamopt-stability/',), files=NAMES
+)
 
 
 def run_stability(
@@ -47,7 +48,6 @@ def run_stability(
     """
     with claimed(out, KIND, resume=resume):
         journal = SampleJournal(out / JOURNAL, {"seed": seed, "methods": list(methods)})
-        clear_leftovers(out, (JOURNAL, *NAMES))
         more = max(journal.samples, default=-1) + 1
         if more > samples:
             said = f"at least {more}, as the map there has; or name another folder"
@@ -71,12 +71,9 @@ def _solve(
     missing = [index for index in samples if index not in journal.samples]
     work = Tasks(solve_sample, {index: (seed, index, methods) for index in missing})
 
-    def keep(_: int, sample: Sample | None) -> None:
-        if sample is None:
-            return
+    def store(_: int, sample: Sample) -> None:
         journal.add(sample)
         if callback is not None:
             callback(sample, len(journal.samples))
 
-    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
-    check_none_lost(work, "--resume solves samples again")
+    Campaign(workers).solve_every(work, store, "--resume solves samples again")

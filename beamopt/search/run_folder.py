@@ -30,7 +30,7 @@ from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
 from beamopt.search.result import Optimisation
 from beamopt.search.run_summary import summary
 from beamopt.storage.input_file import read_bytes, read_json
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, differences
+from beamopt.storage.result_folder import FolderKind, claimed, differences
 from beamopt.storage.timing import read_times, write_times
 from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
 from beamopt.target.point_table import aim_csv
@@ -41,9 +41,7 @@ __all__ = ["RunFolder"]
 GOES_ON = {"search.generations", "stop", "refine"}  # keys that may change when a run goes on
 
 FIGURES = ("best.svg", "best.png", "convergence.svg", "convergence.png")
-KIND = FolderKind("a search", "journal.jsonl", ('{"schema":"beamopt-journal/',))
-NAMES = (
-    "journal.jsonl",
+FILES = (
     "target.csv",
     *SOURCES.values(),
     *PATHS,
@@ -59,6 +57,7 @@ NAMES = (
     "timing.csv",
     "provenance.json",
 )
+KIND = FolderKind("a search", "journal.jsonl", ('{"schema":"beamopt-journal/',), files=FILES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +101,6 @@ class RunFolder:
     def begin(self, scene: Scene, target: Target) -> None:
         """Keep what is asked for; how the run there refined is changed with what it refined."""
         _, sources = scene_to_keep(scene)
-        clear_leftovers(self.path, NAMES)
         for name, content in sources.items():
             write_changed(self.path / name, content)
         if len(target.aim):

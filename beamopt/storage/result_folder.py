@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from glob import escape
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -46,12 +47,14 @@ class FolderKind:
     command has begun, or, where it can not go on, once it is done.
     begins : how the marker begins, white space left out; a text for each version.
     goes_on : whether the command can go on with one.
+    files : names, or patterns of names, of what the command writes beside the marker.
     """
 
     name: str
     marker: str
     begins: tuple[str, ...]
     goes_on: bool = True
+    files: tuple[str, ...] = ()
 
     def is_of(self, folder: Path) -> bool:
         """Whether a folder has the marker; a kill may have left only a part of its beginning."""
@@ -98,6 +101,7 @@ def claimed(
             said = f"{(error.strerror or 'can not be made').lower()}; name a folder to write to"
             raise InputError(path, "", None, said) from None
         clear_scratch()
+        clear_leftovers(path, (escape(kind.marker), *kind.files))
         owner = os.getpid()
         try:
             yield

@@ -5,18 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Literal
 
 from pydantic import Field
 
 from beamopt.base.errors import InputError
-from beamopt.base.processes import in_process, processes
-from beamopt.base.tasks import Tasks, check_none_lost, solve_all
+from beamopt.base.tasks import Tasks
 from beamopt.refine.refine_design import Refinement
 from beamopt.search.optimize import optimize
 from beamopt.search.stopping import StopReason
+from beamopt.storage.campaign import Campaign
 from beamopt.storage.checked_keys import CheckedKeys, Count, parse, quantity
 from beamopt.storage.input_file import read_json
 from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers, own_subfolder
@@ -135,12 +134,11 @@ def _outcomes(
     by_name = {run.name: run for run in runs}
     work = Tasks(run_one, {name: (run, folder) for name, run in by_name.items()})
 
-    def keep(_: str, outcome: Outcome | None) -> None:
-        if outcome is not None and callback is not None:
+    def report(_: str, outcome: Outcome) -> None:
+        if callback is not None:
             callback(outcome, len(work.results) - len(work.lost), len(runs))
 
-    solve_all(work, partial(processes if workers > 1 else in_process, workers), workers, keep)
-    check_none_lost(work, "--resume searches again")
+    Campaign(workers).solve_every(work, report, "--resume searches again")
     return [outcome for name in by_name if (outcome := work.results[name]) is not None]
 
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from beamopt.base.provenance import provenance
+from beamopt.storage.campaign import claimed_journal
 from beamopt.storage.line_journal import LineJournal
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 from femcheck.accuracy.ending import Ending, Within, tips_csv
 from femcheck.accuracy.within import Progress, RungChoice, answer_within, check_asked
@@ -23,10 +24,12 @@ from femcheck.solved.folder import PACKAGES
 __all__ = ["run_accuracy"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',))
-NAMES = (
-    *(JOURNAL, "design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
+FILES = (
+    *("design.json", "tips.csv", "tried.csv", "timing.csv", "summary.json"),
     "provenance.json",
+)
+KIND = FolderKind(
+    "answers to an accuracy", JOURNAL, ('{"schema":"femcheck-accuracy/',), files=FILES
 )
 TRIED = "model,unknowns,size,found,of"
 
@@ -66,9 +69,7 @@ def run_accuracy(
     """
     check_asked(question, accuracy, rung)
     asked = asked_of(question) | {"schema": "femcheck-accuracy/1", "accuracy": accuracy}
-    with claimed(out, KIND, resume=resume):
-        lines = LineJournal(out / JOURNAL, asked, "question of this accuracy")
-        clear_leftovers(out, NAMES)
+    with claimed_journal(out, KIND, asked, "question of this accuracy", resume=resume) as lines:
         found = answer_within(
             question,
             accuracy,

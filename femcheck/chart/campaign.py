@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor, Future
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -14,14 +13,14 @@ import numpy as np
 from beamopt.base.errors import InputError
 from beamopt.base.processes import processes
 from beamopt.base.provenance import provenance
-from beamopt.base.tasks import solve_all
+from beamopt.base.tasks import Work
 from beamopt.plot.style import save_figure
-from beamopt.storage.line_journal import LineJournal
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.campaign import Campaign, Pool, Progress, claimed_journal
+from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.writing import csv_text, json_text, write_atomic
 from femcheck.chart.chart import ACCURACIES, Chart, chart_csv
 from femcheck.chart.figure import chart_figure
-from femcheck.chart.kept import JOURNAL, asked_of, chart_of, journal_of, measured_in
+from femcheck.chart.kept import JOURNAL, SUBJECT, asked_of, chart_of, measured_in
 from femcheck.chart.lineup import Series, line_up
 from femcheck.chart.measure import Measured, key_of, measure, written
 from femcheck.continuation.ended import Ended, NoReply
@@ -34,15 +33,12 @@ from femcheck.solved.folder import PACKAGES
 __all__ = ["TimeBudget", "run_chart"]
 
 CHEAPEST = "accuracy_mm,family,resolution,error_mm,cpu_seconds"
-KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',))
-NAMES = (
-    *(JOURNAL, "chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
+FILES = (
+    *("chart.csv", "cheapest.csv", "reading.md", "provenance.json"),
     *("chart.svg", "chart.png"),
 )
+KIND = FolderKind("a chart", JOURNAL, ('{"schema":"femcheck-chart/',), files=FILES)
 GROWTH = 1.8  # a finer model of a series takes at least so many times as long
-
-Progress = Callable[[int, int, str], None]
-Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,46 +90,22 @@ def run_chart(
     series = line_up(question, families)
     if not series:
         raise InputError("--family", "", ", ".join(families or ()), "none of them can be asked")
-    with claimed(out, KIND, resume=resume):
-        journal = journal_of(out, asked_of(question))
-        clear_leftovers(out, NAMES)
+    with claimed_journal(out, KIND, asked_of(question), SUBJECT, resume=resume) as journal:
         measured = measured_in(journal, question.law.limits.iterations)
-        _measure(
-            question, series, journal, measured, budget or TimeBudget(), workers, progress, pool
-        )
+        work = _ChartWork(question, series, budget or TimeBudget(), measured)
+
+        def store(_: str, one: Measured) -> None:
+            if np.isfinite(one.seconds):  # what was left out may be asked with more time
+                journal.add(written(one))
+
+        Campaign(workers, pool, progress).solve(work, store, lambda key, _: key)
         chart = chart_of(question, measured)
         _write(chart, out, workers)
     return chart
 
 
-def _measure(
-    question: Question,
-    series: Sequence[Series],
-    journal: LineJournal,
-    measured: dict[str, Measured],
-    budget: TimeBudget,
-    workers: int,
-    progress: Progress | None,
-    pool: Pool,
-) -> None:
-    """Ask what is not measured yet."""
-    asked = {key_of(model) for one in series for model in one.all}
-
-    def keep(_: str, one: Measured) -> None:
-        line = written(one)
-        if np.isfinite(one.seconds):  # what was left out may be asked with more time
-            journal.add(line)
-        if progress is not None:
-            progress(len(asked & measured.keys()), len(asked), line["model"])
-
-    if progress is not None:
-        progress(len(asked & measured.keys()), len(asked), "starting")
-    work = _ChartWork(question, series, budget, measured)
-    solve_all(work, lambda: pool(workers), workers, keep)
-
-
 @dataclass
-class _ChartWork:
+class _ChartWork(Work[str, Measured]):
     """Each series from coarse to fine: a finer model waits until its cost can be guessed.
 
     results : replies by model, those of earlier charts among them.
@@ -151,10 +123,6 @@ class _ChartWork:
     def keys(self) -> list[str]:
         """Series by series."""
         return list(self._models)
-
-    def begin(self, executor: Executor, waiting: Sequence[str]) -> bool:
-        """Nothing comes before the models."""
-        return True
 
     def is_ready(self, key: str) -> bool:
         """Whether all coarser models of its series are done."""

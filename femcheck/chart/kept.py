@@ -24,9 +24,9 @@ from femcheck.models.question import LawChoice, Question
 from femcheck.prediction.options import PredictionOptions
 from femcheck.solid.winding import Wound
 
-__all__ = ["JOURNAL", "asked_of", "chart_of", "journal_of", "measured_in", "read_chart"]
+__all__ = ["JOURNAL", "SUBJECT", "asked_of", "chart_of", "measured_in", "read_chart"]
 
-JOURNAL = "journal.jsonl"
+JOURNAL, SUBJECT = "journal.jsonl", "chart"
 SCHEMA = "femcheck-chart/1"
 
 
@@ -40,16 +40,6 @@ def asked_of(question: Question) -> dict[str, Any]:
         "solver": question.law.solver,
         "pressures": question.pressures.tolist(),
     }
-
-
-def journal_of(folder: Path, asked: dict[str, Any] | None = None) -> LineJournal:
-    """Journal of a chart's folder, which is claimed; without `asked` it is read only.
-
-    Raises
-    ------
-    InputError : it is another chart's, or damaged.
-    """
-    return LineJournal(folder / JOURNAL, asked, "chart")
 
 
 def measured_in(journal: LineJournal, iterations: int = 0) -> dict[str, Measured]:
@@ -89,7 +79,7 @@ def read_chart(folder: Path) -> Chart:
     """
     file = folder / JOURNAL
     try:
-        journal = journal_of(folder)
+        journal = LineJournal(file, None, SUBJECT)
     except OSError:
         raise InputError(file, "", None, "no journal of a chart") from None
     try:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor
-from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
 
 import femcheck.solved.picture as picture
 from beamopt.base.processes import processes
-from beamopt.base.tasks import solve_all
+from beamopt.storage.campaign import Campaign, Pool, Progress
 from femcheck.check.checked import Checked
 from femcheck.check.comparison import compare
 from femcheck.check.kept import read_case, write_case
@@ -30,9 +27,6 @@ from femcheck.solved.meshes import heights_of, section_meshes
 from femcheck.solved.subject import Subject, geometry_steps
 
 __all__ = ["check_design"]
-
-Progress = Callable[[int, int, str], None]
-Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
 def check_design(
@@ -74,18 +68,13 @@ def check_design(
     0
     """
     with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
-        checked = _checked(subject, folder, options, workers, progress, pool)
+        checked = _checked(subject, folder, options, Campaign(workers, pool, progress))
         _write(folder, checked)
     return checked
 
 
 def _checked(
-    subject: Subject,
-    folder: CheckFolder,
-    options: CheckOptions,
-    workers: int,
-    progress: Progress | None,
-    pool: Pool,
+    subject: Subject, folder: CheckFolder, options: CheckOptions, campaign: Campaign
 ) -> Checked:
     """Solve what is not solved yet."""
     sections = section_meshes(subject, options)
@@ -94,17 +83,12 @@ def _checked(
     stages = _stages(subject, options, *sections)
     schedule = Schedule(stages, subject.design.pressures, options.limits)
     _take_kept(folder.cases, schedule)
-    total = len(schedule.keys)
     digests = {stage.name: stage.solid.digest for stage in stages}
 
-    def keep(key: Key, result: CaseResult) -> None:
+    def store(key: Key, result: CaseResult) -> None:
         write_case(folder.cases, key, result, digests[key[0]])
-        if progress is not None:
-            progress(len(schedule.results), total, f"{key[0]} {result.status.value}")
 
-    if progress is not None:
-        progress(len(schedule.results), total, "starting")
-    solve_all(schedule, lambda: pool(workers), workers, keep)
+    campaign.solve(schedule, store, lambda key, result: f"{key[0]} {result.status.value}")
     compared = compare(subject, stages, schedule.results)
     geometry = geometry_steps(subject, sections[0])
     quality = quality_of(subject.outline, sections[0])

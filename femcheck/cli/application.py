@@ -232,7 +232,8 @@ def write_baselines(
     designs: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[DESIGN…]", help="Design files, or names of the package's; those if left out."
+            metavar="[DESIGN|RUN|SCENE…]",
+            help="Design files, run folders, scenes, or names of the package's; those if left out.",
         ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of the baselines.")] = Path("baselines"),

@@ -7,6 +7,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
 from beamopt.base.arrays import FloatArray
+from beamopt.base.tasks import Work
 from femcheck.continuation.limits import Limits
 from femcheck.solved.case import Case, CaseResult, Solid, solve_case, stopped
 
@@ -17,7 +18,7 @@ PointKey = tuple[int, int]
 
 
 @dataclass
-class PointWork:
+class PointWork(Work[PointKey, CaseResult]):
     """What is to be solved; see `beamopt.base.tasks`.
 
     solids : of one mesh; each begins at the shapes of the one before.
@@ -34,10 +35,6 @@ class PointWork:
         """Solid by solid."""
         rows = range(len(self.pressures))
         return [(number, row) for number in range(len(self.solids)) for row in rows]
-
-    def begin(self, executor: Executor, waiting: Sequence[PointKey]) -> bool:
-        """Nothing comes before the cases."""
-        return True
 
     def is_ready(self, key: PointKey) -> bool:
         """As soon as the solid before has its shape."""

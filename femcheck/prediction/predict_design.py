@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
-from concurrent.futures import Executor
-from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +10,8 @@ import numpy as np
 import femcheck.solved.picture as picture
 from beamopt.base.arrays import FloatArray
 from beamopt.base.processes import processes
-from beamopt.base.tasks import solve_all
 from beamopt.plot.style import save_figure
+from beamopt.storage.campaign import Campaign, Pool, Progress
 from femcheck.continuation.outcome import Status
 from femcheck.material.law import Law
 from femcheck.mesh.gmsh_section import MeshFailure
@@ -35,9 +32,6 @@ from femcheck.solved.subject import Subject
 __all__ = ["predict_design"]
 
 FIGURES = ("paths", "axis")
-
-Progress = Callable[[int, int, str], None]
-Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
 def predict_design(
@@ -81,7 +75,7 @@ def predict_design(
     """
     law = options.law_for(subject.design.actuator)
     with CheckFolder.open(out, subject, options.question, resume=resume) as folder:
-        found = _predicted(subject, folder, options, law, workers, progress, pool)
+        found = _predicted(subject, folder, options, law, Campaign(workers, pool, progress))
         _write(folder, found)
     return found
 
@@ -91,9 +85,7 @@ def _predicted(
     folder: CheckFolder,
     options: PredictionOptions,
     law: Law,
-    workers: int,
-    progress: Progress | None,
-    pool: Pool,
+    campaign: Campaign,
 ) -> Prediction:
     """Follow what was not followed yet."""
     sections = section_meshes(subject, options)
@@ -108,17 +100,15 @@ def _predicted(
     rays, places = rays_of(subject.pressures)
     work = RayWork(solids, rays, options.limits)
 
-    def keep(key: RayKey, result: RayResult) -> None:
+    def store(key: RayKey, result: RayResult) -> None:
         write_ray(_file(folder, work, key), result, _digest(solids[key[0]], work, key))
-        if progress is not None:
-            said = f"{key[0]}, {rays[key[1]].text}: {result.status.value}"
-            progress(len(work.results), len(work.keys), said)
+
+    def text(key: RayKey, result: RayResult) -> str:
+        return f"{key[0]}, {rays[key[1]].text}: {result.status.value}"
 
     def follow() -> Prediction:
         _take_kept(folder, work)
-        if progress is not None:
-            progress(len(work.results), len(work.keys), "starting")
-        solve_all(work, lambda: pool(workers), workers, keep)
+        campaign.solve(work, store, text)
         results = dict(work.results)
         return Prediction(
             subject, options, law, None, quality, solids, tuple(rays), tuple(places), results

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
+from beamopt.base.tasks import Work
 from femcheck.continuation.limits import Limits
 from femcheck.prediction.ray_trace import RayResult, RayTask, stopped_ray, trace_ray
 from femcheck.prediction.rays import Ray
@@ -18,7 +19,7 @@ RayKey = tuple[str, int]
 
 
 @dataclass
-class RayWork:
+class RayWork(Work[RayKey, RayResult]):
     """What is to be traced; see `beamopt.base.tasks`.
 
     solids : by mesh. rays : all of them; the coarse mesh traces the `principal` ones alone, and
@@ -40,14 +41,6 @@ class RayWork:
 
     def _is_on_both(self, number: int) -> bool:
         return self.rays[number].is_principal or number in self.asked
-
-    def begin(self, executor: Executor, waiting: Sequence[RayKey]) -> bool:
-        """Nothing comes before the rays."""
-        return True
-
-    def is_ready(self, key: RayKey) -> bool:
-        """All can be begun at once."""
-        return True
 
     def submit(self, executor: Executor, key: RayKey) -> Future[RayResult]:
         """Have a ray followed."""

@@ -15,7 +15,7 @@ import numpy as np
 from beamopt.base.errors import InputError
 from beamopt.scene.bundled import bundled_scenes
 from beamopt.scene.design import Design, load_design
-from beamopt.scene.named import name_of
+from beamopt.scene.named import is_scene, named_design
 from beamopt.scene.scene import load_scene
 from beamopt.storage.result_folder import design_file
 from femcheck.regression.held import LADDER
@@ -96,7 +96,9 @@ _LEFT_OUT = {
 
 
 def find_design(given: str, meshes: Path) -> HeldDesign:
-    """A design that comes with the package, by name, or one of a file or a run folder.
+    """A design that comes with the package, by name, or one of a file, a run folder or a scene.
+
+    A name that is one of `BUNDLED` and of a scene, too, is that of `BUNDLED`.
 
     meshes : folder of the kept section meshes.
 
@@ -109,12 +111,12 @@ def find_design(given: str, meshes: Path) -> HeldDesign:
         rungs = frozenset(LADDER) - _LEFT_OUT.get(given, frozenset())
         return HeldDesign(given, BUNDLED[given](), None, mesh, rungs)
     path = Path(given)
-    if not path.exists():
-        allowed = f"no such design; a file, a run folder, or one of: {', '.join(BUNDLED)}"
+    if not is_scene(given) and not path.exists():
+        names = ", ".join([*BUNDLED, *(name for name in bundled_scenes() if name not in BUNDLED)])
+        allowed = f"no such design; a design file, a run folder, a scene, or one of: {names}"
         raise InputError(given, "", None, allowed)
-    file = design_file(path)
-    design = load_design(file)
-    name = name_of(path, design)
+    name, design = named_design(given)
+    file = None if given in bundled_scenes() and is_scene(given) else design_file(path)
     return HeldDesign(name, design, file, meshes / f"{name}.msh")
 
 

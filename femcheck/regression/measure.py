@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
-from functools import partial
 
 from beamopt.base.errors import InputError
-from beamopt.base.processes import in_process, processes
-from beamopt.base.tasks import solve_all
+from beamopt.base.tasks import Work
+from beamopt.storage.campaign import Campaign
 from femcheck.regression.held import LADDER, Held
 from femcheck.regression.held_design import HeldDesign
 from femcheck.regression.rods import held_rods
@@ -65,18 +64,17 @@ def measure_all(
     InputError : a kept mesh is missing or damaged.
     """
     work = _PartWork(designs, estimate)
-    pool = partial(processes if workers > 1 else in_process, workers)
 
     def done(key: PartKey, result: MeasuredPart) -> None:
         if callback is not None:
             callback(*key)
 
-    solve_all(work, pool, workers, done)
+    Campaign(workers).solve(work, done)
     return {design.name: work.of(design) for design in designs}
 
 
 @dataclass
-class _PartWork:
+class _PartWork(Work[PartKey, MeasuredPart]):
     """What is to be measured; see `beamopt.base.tasks`."""
 
     designs: Sequence[HeldDesign]
@@ -89,14 +87,6 @@ class _PartWork:
         found = [(one.name, part) for one in self.designs for part in parts_of(one)]
         order = list(PARTS)
         return sorted(found, key=lambda key: -order.index(key[1]))
-
-    def begin(self, executor: Executor, waiting: Sequence[PartKey]) -> bool:
-        """Nothing comes before the parts."""
-        return True
-
-    def is_ready(self, key: PartKey) -> bool:
-        """All can be begun at once."""
-        return True
 
     def submit(self, executor: Executor, key: PartKey) -> Future[MeasuredPart]:
         """Have a part measured."""

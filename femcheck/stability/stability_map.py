@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from concurrent.futures import Executor
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 from beamopt.base.errors import InputError
 from beamopt.base.processes import processes
 from beamopt.base.provenance import provenance, thread_settings
-from beamopt.base.tasks import solve_all
 from beamopt.plot.style import save_figure
+from beamopt.storage.campaign import Campaign, Pool
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed, clear_leftovers
+from beamopt.storage.result_folder import FolderKind, claimed
 from beamopt.storage.writing import json_text, write_atomic
 from femcheck.solved.folder import PACKAGES
 from femcheck.stability.axis import Axis
@@ -28,15 +26,14 @@ from femcheck.stability.work import Key, MapWork, Result
 __all__ = ["JOURNAL", "caption_of", "redraw_map", "run_map"]
 
 JOURNAL = "journal.jsonl"
-KIND = FolderKind("a stability map", JOURNAL, ('{"schema":"femcheck-stability/',))
 WRITTEN = "written_with"  # what tables and figure were made with, which may be later
-NAMES = (
+FILES = (
     *("cases.csv", "limits.csv", "validity.csv", "reading.md", "timing.csv", "provenance.json"),
     *("stability.svg", "stability.png"),
 )
+KIND = FolderKind("a stability map", JOURNAL, ('{"schema":"femcheck-stability/',), files=FILES)
 
 Progress = Callable[[Key, Result, int, int], None]
-Pool = Callable[[int], AbstractContextManager[Executor]]
 
 
 def run_map(
@@ -67,7 +64,6 @@ def run_map(
     """
     with claimed(out, KIND, resume=resume):
         journal = MapJournal(out / JOURNAL, axes)
-        clear_leftovers(out, (JOURNAL, *NAMES))
         made = _solve(out, journal, axes, wanted, workers, progress, pool)
         return _write(out, axes, journal.results, made, figures)
 
@@ -92,7 +88,7 @@ def _solve(
         if progress is not None:
             progress(key, result, len(work.results), total)
 
-    solve_all(work, lambda: pool(workers), workers, keep)
+    Campaign(workers, pool).solve(work, keep)
     threads = "1" if pool is processes else thread_settings()["MKL_NUM_THREADS"]
     made = {"workers": workers, "threads_of_a_worker": threads, **provenance(PACKAGES)}
     if len(work.results) == before:  # nothing was solved now

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
+from beamopt.base.tasks import Work
 from femcheck.stability.axis import Axis
 from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import CellResult, TraceResult, solve_cell, trace_row
@@ -31,7 +32,7 @@ def keys_of(axis: Axis) -> list[Key]:
 
 
 @dataclass
-class MapWork:
+class MapWork(Work[Key, Result]):
     """What is to be solved, and what is known."""
 
     axes: Mapping[str, Axis]
@@ -41,14 +42,6 @@ class MapWork:
     def keys(self) -> list[Key]:
         """Axis by axis."""
         return [key for axis in self.axes.values() for key in keys_of(axis)]
-
-    def begin(self, executor: Executor, waiting: Sequence[Key]) -> bool:
-        """Nothing comes before the tasks."""
-        return True
-
-    def is_ready(self, key: Key) -> bool:
-        """All can be begun at once."""
-        return True
 
     def submit(self, executor: Executor, key: Key) -> Future[Result]:
         """Have a cell solved, or a path followed."""

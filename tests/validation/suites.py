@@ -17,6 +17,7 @@ from tests.validation import (
     regression,
     resume,
     rods,
+    sections,
     solid,
     symmetry,
 )
@@ -28,6 +29,7 @@ SUITES: dict[str, Callable[[bool], list[Check]]] = {
     "arc": arc.checks,
     "genotypes": genotypes.checks,
     "geometry": geometry.checks,
+    "sections": sections.checks,
     "symmetry": symmetry.checks,
     "resume": resume.checks,
     "solid": solid.checks,

@@ -120,6 +120,26 @@ def test_every_subject(subject: str, said: str, capsys: pytest.CaptureFixture[st
     assert ("worst node   2.683 mm at" in printed) == ("RMS distance" in printed) == ("65" in said)
 
 
+def test_a_run_folder_is_its_scene(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Scene and target as the run keeps them, whatever happened to the files since."""
+    monkeypatch.chdir(tmp_path)
+    Path("table.csv").write_bytes(TABLE.read_bytes())
+    scene = SCENES["hand-drawn-workspace"].read_text()
+    assert TABLE.name in scene
+    Path("mine.toml").write_text(scene.replace(TABLE.name, "table.csv"))
+    tiny = [f"--set=search.{key}" for key in ("generations=0", "population=2")]
+    assert run(["optimize", "mine.toml", "--out", "run", *tiny]) == 0
+    Path("table.csv").unlink()
+    capsys.readouterr()
+    assert run(["bound", "run", "--work", "0.001"]) in (0, 3)
+    assert "65.5846 mm²" in capsys.readouterr().out
+    Path("empty").mkdir()
+    assert run(["bound", "empty"]) == 2
+    assert "no scene.toml" in capsys.readouterr().err
+
+
 def test_keys_can_be_replaced_for_a_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["bound", str(TABLE), "--set", "actuator.length=120"]) == 0
     printed = capsys.readouterr().out

@@ -6,6 +6,8 @@ import csv
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,7 +15,13 @@ import pytest
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError
 from beamopt.chart.chart import HEADER, RodChart, run_chart
-from beamopt.chart.measure import MeasuredMethod, TimeLimits, measure_rungs, reference_of
+from beamopt.chart.measure import (
+    MeasuredMethod,
+    RodReference,
+    TimeLimits,
+    measure_rungs,
+    reference_of,
+)
 from beamopt.cli.application import run
 from beamopt.comparators.methods import DEFAULT_RESOLUTIONS, Adaptive, all_methods, limited
 from beamopt.comparators.shooting import Shooting
@@ -141,6 +149,14 @@ def test_who_is_fastest() -> None:
         "to 1e-06 mm unknown (reference: 1e-05 mm)"
     )
     assert "to 1e-06 mm none" in replace(chart, uncertainty=1e-9).verdict
+
+
+def test_an_error_is_the_largest_where_both_have_a_tip() -> None:
+    tips = np.array([[0.0, 0.0, 100.0], [3.0, 0.0, 99.0], [np.nan] * 3, [5.0, 0.0, 98.0]])
+    solution = cast("RodSolution", SimpleNamespace(tips=tips))
+    moved = tips + np.array([[0.0, 0.1, 0.0], [0.0, 0.0, 0.3], [1.0] * 3, [np.nan] * 3])
+    assert RodReference(solution, 0.0).error_of(moved) == pytest.approx(0.3)
+    assert np.isnan(RodReference(solution, 0.0).error_of(moved * np.nan))
 
 
 def test_every_method_has_a_sensible_resolution() -> None:

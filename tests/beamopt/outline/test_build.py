@@ -38,6 +38,15 @@ def test_three_drawn_pieces_are_as_drawn() -> None:
     assert [loop.supply for loop in outline.pieces[0].loops].count(0) == 2
 
 
+def test_chambers_of_one_supply_add() -> None:
+    """Two circles of one supply: area and first moments of both, up to places of 1e-5 mm."""
+    circles = [Circle(2, (17, 0), 3.0), Circle(2, (0, 17), 2.0)]
+    outline = build_outline(RING, circles, SealRules(), 0.01)
+    areas = np.pi * np.array([3.0, 2.0]) ** 2
+    raw = outline.moments.raw[2]
+    np.testing.assert_allclose(raw[:3], [areas.sum(), *(17 * areas)], rtol=1e-6)
+
+
 def test_a_sector_is_one_loop_with_straight_ends() -> None:
     grid = PolarGrid(10, 25, start=0, stop=90)
     outline = build_outline(grid, [Circle(1, (12, 12), 3.0)], RULES)

@@ -1,64 +1,18 @@
-"""Random sealed sections, and sections that nobody would draw."""
-
-from collections import Counter
+"""Sections that nobody would draw; random ones are in the validation suite `sections`."""
 
 import numpy as np
 import pytest
 
-from beamopt.outline.build import SLACK, build_outline
-from beamopt.outline.faults import FaultKind, Severity
-from beamopt.outline.outline import Outline
+from beamopt.outline.build import build_outline
+from beamopt.outline.faults import FaultKind
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.moments import moments_of
 from beamopt.section.raster import raster
 from beamopt.section.seal import SealRules
 from tests.beamopt.outline.hostile import RING, RULES, Case, hostile_cases
-from tests.beamopt.outline.necks import thinnest
 from tests.beamopt.outline.sound import check_sound
-
-SAGITTA = 0.04
-TOLERANCE = 2 * SAGITTA + SLACK
-
-
-def random_section(seed: int) -> FeaturePoints:
-    rng = np.random.default_rng(seed)
-    return FeaturePoints.random(RING, int(rng.integers(60, 101)), rng)
-
-
-def skin_of(outline: Outline) -> float:
-    """Least skin [mm]: outer chords against chambers' vertices and chords, by radii alone."""
-    outer = [chamber.exterior for chamber in outline.chambers]
-    return min(
-        25 - SAGITTA - max(np.hypot(*points.T).max() for points in outer),
-        min(np.hypot(*((points + np.roll(points, -1, axis=0)) / 2).T).min() for points in outer)
-        - 10,
-    )
-
-
-def test_two_hundred_random_sections() -> None:
-    """Half a minute, which buys the one claim that the rest stands on: what is made by the rules
-    keeps them. Every one is sound, its skins are measured without shapely, and a quarter of them
-    is searched for thin material by another method; what is thinner than asked must be named.
-    """
-    violations: Counter[FaultKind] = Counter()
-    violated = 0
-    for seed in range(200):
-        outline = build_outline(RING, random_section(seed), RULES, SAGITTA)
-        check_sound(outline, RING)
-        assert outline.buildable
-        found = [fault for fault in outline.faults if fault.severity is Severity.VIOLATION]
-        violations.update(fault.status for fault in found)
-        violated += bool(found)
-        if not found:
-            assert skin_of(outline) > RULES.skin - TOLERANCE
-        if seed % 4 == 0:
-            # two tenths less than asked: straight ways that are not square to the walls count too
-            width, where = thinnest(outline, RULES.wall - TOLERANCE - 0.01)
-            named = [fault for fault in found if fault.status is not FaultKind.SKIN]
-            assert named or width == RULES.wall - TOLERANCE - 0.01, (seed, width, where)
-        assert min(chamber.area for chamber in outline.chambers) > 0.9 * RULES.smallest_chamber
-    assert violated <= 10, violations
+from tests.validation.sections import random_section
 
 
 @pytest.mark.parametrize("case", list(hostile_cases()), ids=lambda case: case[0])

@@ -317,6 +317,7 @@ def test_rung_says_what_and_why(capsys: pytest.CaptureFixture[str], tmp_path: Pa
     assert "no loads, sections or rest shape vary: exact" in said
     file = design_with({"density": 1070.0}, {"rung": "loaded"}).save(tmp_path / "a.json")
     assert run(["rung", str(file)]) == 0
+    assert run(["rung", str(file), "--set", "loads.density=1000"]) == 2
     assert "asked for" in capsys.readouterr().out
 
 

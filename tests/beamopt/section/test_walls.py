@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamopt.base.arrays import LabelArray
-from beamopt.section.walls import add_walls
+from beamopt.section.seal import UNSEALED, SealRules
+from beamopt.section.walls import add_walls, wall_steps
 
 
 def by_all_distances(labels: LabelArray, steps: int, periodic: bool) -> LabelArray:
@@ -101,3 +102,11 @@ def test_a_wall_round_a_corner_has_diamond_ends() -> None:
     i, j = np.indices(labels.shape)
     expected = np.abs(i - 4) + np.abs(j - 4) > 2
     np.testing.assert_array_equal(walled(labels, 2, False), expected.astype(np.uint8))
+
+
+def test_half_of_a_wall_lies_to_each_side_unless_the_section_is_sealed() -> None:
+    assert [wall_steps(elements, UNSEALED) for elements in (0, 2, 4, 64)] == [0, 1, 2, 32]
+    assert wall_steps(4, SealRules(skin=1.0, wall=1.0)) == 0
+    for odd in (-2, 1, 3):
+        with pytest.raises(ValueError, match="wall_elements"):
+            wall_steps(odd, UNSEALED)

@@ -10,13 +10,14 @@ import pytest
 from beamopt.base.errors import InputError
 from beamopt.scene.named import named_design
 from femcheck.accuracy.ending import Ending, beam_difference
-from femcheck.accuracy.folder import NAMES, run_accuracy
+from femcheck.accuracy.folder import FILES as WRITTEN
+from femcheck.accuracy.folder import JOURNAL, run_accuracy
 from femcheck.models.question import Question
 from femcheck.prediction.options import PredictionOptions
 from tests.femcheck.made_up import AT, DESIGN, NEO, RIGID, MadeUp, powers, question_of
 from tests.validation.resume import everything
 
-FILES = {*NAMES, "provenance.json"}
+FILES = {JOURNAL, *WRITTEN}
 
 
 def content(folder: Path) -> dict[str, bytes]:

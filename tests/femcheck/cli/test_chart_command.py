@@ -9,8 +9,10 @@ from beamopt.base.processes import in_process
 from femcheck.chart import lineup
 from femcheck.chart.campaign import run_chart
 from femcheck.chart.kept import read_chart
+from femcheck.chart.reference import Limit
 from femcheck.cli.application import run
 from tests.femcheck.check.small import design_of, three_circles
+from tests.femcheck.made_up import MadeUp, powers
 
 
 @pytest.fixture
@@ -41,6 +43,19 @@ def test_a_chart_says_who_is_cheapest(folder: Path, capsys: pytest.CaptureFixtur
     assert "--resume goes on" in capsys.readouterr().err
     assert run(["chart", "disc.json", "--family", "beam", "--resume"]) == 2
     assert "of another question" in capsys.readouterr().err
+
+
+def test_a_chart_without_a_reference_is_not_computed(folder: Path) -> None:
+    """A material whose solids all end without a tip."""
+    with MadeUp(powers(1.0, 2), missing=lambda model: range(27)).instead():
+        assert run(["chart", "disc.json", "--law", "neo-hookean", "--family", "wedge18"]) == 3
+
+
+def test_families_that_contradict_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another family is sure of tips at the base, beside the closed form."""
+    at_base = Limit("other", np.zeros((27, 3)), np.full(27, 0.1))
+    monkeypatch.setattr("femcheck.chart.reference.limits_of", lambda *asked: [at_base])
+    assert run(["chart", "disc.json", *FEW]) == 1
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,30 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def test_designs_by_the_names_of_other_commands(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A bundled scene, a scene file and a run folder; each is found again by its baseline."""
+    sections = {"sections": LADDER[: LADDER.index("raster")]}
+    monkeypatch.setattr("femcheck.regression.measure.PARTS", sections)
+    assert "hand-drawn-section" not in BUNDLED
+    saved(folder, "drawn")
+    (folder / "mine.toml").write_text(
+        'name = "mine"\n[target]\nkind = "section"\nfile = "drawn.json"\n'
+    )
+    (folder / "run").mkdir()
+    saved(folder / "run", "best")
+    names = ["hand-drawn-section", "mine.toml", "run"]
+    assert run(["baseline", *names, "--out", "kept", *HERE]) == 0
+    for given in ("hand-drawn-section", "mine", "run", "mine.toml"):
+        assert run(["regress", given, "--baseline", "kept", *HERE]) == 0
+    saved(folder, "drawn", pressures=[0, 10, 20])
+    (folder / "mine.toml").write_text((folder / "mine.toml").read_text() + "[grid]\nradial = 4\n")
+    assert run(["regress", "run", "--baseline", "kept", *HERE]) == 0
+    saved(folder / "run", "best", pressures=[0, 10, 20])
+    assert "is not the design" in complaint(["regress", "run", "--baseline", "kept", *HERE], capsys)
+
+
 @pytest.fixture
 def kept(folder: Path) -> Path:
     assert run(WRITE) == 0

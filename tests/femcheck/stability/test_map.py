@@ -12,7 +12,7 @@ from femcheck.stability.ending import MapEnding
 from femcheck.stability.journal import MapJournal
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
-from femcheck.stability.stability_map import NAMES, redraw_map
+from femcheck.stability.stability_map import FILES, redraw_map
 from tests.femcheck.stability.small import (
     DEADLY,
     an_axis,
@@ -36,7 +36,7 @@ def whole(tmp_path: Path) -> Path:
 def test_files(whole: Path) -> None:
     assert {file.name for file in whole.iterdir()} == {
         "journal.jsonl",
-        *(name for name in NAMES if not name.startswith("stability")),
+        *(name for name in FILES if not name.startswith("stability")),
     }
     cases = (whole / "cases.csv").read_text().splitlines()
     assert len(cases) == 1 + 5 * 3
