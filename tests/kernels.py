@@ -6,18 +6,24 @@ Once, before tests start in several processes, each of which would compile them 
 from __future__ import annotations
 
 import hashlib
+import os
 import tempfile
 from pathlib import Path
 
+import numba
+
 import beamopt
 import femcheck
+from beamopt.base.processes import in_process
 from beamopt.chart.chart import run_chart
 from beamopt.chart.measure import TimeLimits
+from femcheck.material.catalogue import MATERIALS
+from femcheck.material.differentiate import differences, random_deformations
 
 __all__ = ["compile_all"]
 
 ROOT = Path(__file__).resolve().parents[1]
-STAMP = ROOT / "beamopt" / "__pycache__" / "kernels-are-of"
+STAMP = ROOT / "beamopt" / "__pycache__" / "compiled-for"
 QUICK = (
     *("search.generations=1", "search.population=4", "refine.flips=200", "refine.rounds=1"),
     *("refine.steps=2", "refine.outline_steps=2"),
@@ -39,17 +45,20 @@ def compile_all(folder: Path) -> None:
     drawn = beamopt.load_design(str(beamopt.load_scene("gravity").target.file))
     subject = femcheck.sealed_copy("round", drawn, 1.0)
     sizes = femcheck.SectionSizes(factor=9.0)
-    for law in ("wound", "yeoh", "gent", "mooney-rivlin"):
-        options = femcheck.PredictionOptions(law=law, layers=2, sizes=sizes, iterations=2)
-        femcheck.predict_design(subject, folder / law, options)
-    for element in ("tet4", "wedge18"):
-        check = femcheck.CheckOptions(layers=2, element=element, sizes=sizes, iterations=2)
-        femcheck.check_design(subject, folder / element, check)
+    options = femcheck.PredictionOptions(law="wound", layers=2, sizes=sizes, iterations=2)
+    femcheck.predict_design(subject, folder / "wound", options, pool=in_process)
+    check = femcheck.CheckOptions(layers=2, element="tet4", sizes=sizes, iterations=2)
+    femcheck.check_design(subject, folder / "tet4", check, pool=in_process)
+    for name in MATERIALS:
+        for ratio in (0.4, 0.5):
+            law = femcheck.law_by_name(name, 300.0, ratio)
+            differences(law, random_deformations(2, seed=0))
 
 
 def digest() -> str:
-    """A digest of the sources that kernels may stand in."""
+    """A digest of the sources that kernels may stand in, and of where they are kept."""
     state = hashlib.blake2b(digest_size=8)
+    state.update(f"{numba.__version__} {os.environ.get('NUMBA_CACHE_DIR', '')}".encode())
     for path in sorted((*ROOT.glob("beamopt/**/*.py"), *ROOT.glob("femcheck/**/*.py"))):
         state.update(path.read_bytes())
     return state.hexdigest()

@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from beamopt.base.provenance import thread_settings
 
-__all__ = ["console", "progress_bar", "say_workers", "work_progress"]
+__all__ = ["console", "counted", "progress_bar", "say_workers", "work_progress"]
 
 EVERY = 10.0  # s between two lines where there is no terminal
 
@@ -38,6 +39,29 @@ def progress_bar(unit: str) -> Progress:
         disable=not terminal.is_terminal,
         transient=True,
     )
+
+
+@contextmanager
+def counted(
+    unit: str, title: str, total: int | None = None, *, said: str = "starting", lines: int = 0
+) -> Iterator[Callable[[int, int, str], None]]:
+    """A function to call with the number of `unit`s that are done, of all of them, and a text.
+
+    It moves a bar on a terminal; elsewhere it prints so many lines with the time that is left.
+    """
+    started, first = time.perf_counter(), 0
+    with progress_bar(unit) as bar:
+        task = bar.add_task(escape(title), total=total, said=said)
+
+        def show(done: int, total: int, said: str) -> None:
+            nonlocal first
+            first = first or done - 1
+            bar.update(task, completed=done, total=total, said=escape(said))
+            if lines and bar.disable and done * lines // total > (done - 1) * lines // total:
+                left = (time.perf_counter() - started) / (done - first) * (total - done)
+                console.print(f"{done:,} of {total:,} {unit}, {left / 60:.1f} min left")
+
+        yield show
 
 
 @contextmanager

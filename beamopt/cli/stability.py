@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import perf_counter
 
 from rich.table import Table
 
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, counted
 from beamopt.rod_map.sampling import Sample
 from beamopt.rod_map.stability import run_stability
 from beamopt.rod_map.summary import rates_of
@@ -19,18 +18,11 @@ LINES = 20  # of progress, where there is no terminal to draw a bar on
 
 def stability_command(out: Path, samples: int, workers: int, seed: int, resume: bool) -> None:
     """Make a stability map, show progress, and print the rates of success."""
-    started, first = perf_counter(), 0
-    with progress_bar("cases") as bar:
-        task = bar.add_task("map", total=samples, said="starting (compiles once on a machine)")
+    starting = "starting (compiles once on a machine)"
+    with counted("cases", "map", samples, said=starting, lines=LINES) as tell:
 
         def show(sample: Sample, done: int) -> None:
-            nonlocal first
-            first = first or done - 1
-            case = sample.case
-            bar.update(task, completed=done, said=f"{case.kind.value} {case.size:g}")
-            if bar.disable and (done * LINES // samples) > ((done - 1) * LINES // samples):
-                left = (perf_counter() - started) / (done - first) * (samples - done)
-                console.print(f"{done:,} of {samples:,} cases, {left / 60:.1f} min left")
+            tell(done, samples, f"{sample.case.kind.value} {sample.case.size:g}")
 
         found = run_stability(
             out, samples, workers=workers, seed=seed, resume=resume, callback=show

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table
 
-from beamopt.cli.progress import console, progress_bar
+from beamopt.cli.progress import console, counted
 from beamopt.study.plan import Plan
 from beamopt.study.study import run_study
 from beamopt.study.table import SUMMARIES, Outcome, targets_of, title
@@ -18,11 +18,10 @@ __all__ = ["refinement_table", "study_command"]
 
 def study_command(out: Path, plan: Plan, workers: int, resume: bool) -> None:
     """Run a study, show progress, and print the losses by target."""
-    with progress_bar("runs") as bar:
-        task = bar.add_task("study", total=len(plan.runs()), said="starting")
+    with counted("runs", "study", len(plan.runs())) as tell:
 
         def show(outcome: Outcome, done: int, total: int) -> None:
-            bar.update(task, completed=done, said=f"{outcome.run.name} L {outcome.final.L:.4g} mm²")
+            tell(done, total, f"{outcome.run.name} L {outcome.final.L:.4g} mm²")
 
         outcomes = run_study(out, plan, workers=workers, resume=resume, callback=show)
     console.print(_losses(outcomes))

@@ -6,13 +6,19 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from beamopt.storage.writing import csv_text, json_text
 from femcheck.check.checked import Checked, compare_csv
 from femcheck.check.comparison import Comparison, table_csv
 from femcheck.continuation.outcome import Status
 from femcheck.solved.cells import DIGITS
+from femcheck.solved.summaries import (
+    largest,
+    rounded,
+    section_summary,
+    size_summary,
+    timing_rows,
+    work_summary,
+)
 
 __all__ = ["summary", "tables_of", "verdict"]
 
@@ -60,7 +66,6 @@ def _loaded(compared: Comparison) -> int:
 def summary(checked: Checked) -> dict[str, Any]:
     """The check without times."""
     subject, options = checked.subject, checked.options
-    outline = subject.outline
     data: dict[str, Any] = {
         "design": subject.name,
         "verdict": {
@@ -71,18 +76,7 @@ def summary(checked: Checked) -> dict[str, Any]:
             "text": verdict(checked),
             "agree": options.agree,
         },
-        "section": {
-            "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
-            "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
-            "islands": len(outline.islands),
-            "faults": [str(fault) for fault in checked.subject.design.findings],
-        },
-    }
-    if subject.sealing_moved is not None:
-        data["sealing_moved_mm"] = {
-            "worst": round(float(subject.sealing_moved.max()), DIGITS),
-            "median": round(float(np.median(subject.sealing_moved)), DIGITS),
-        }
+    } | section_summary(subject)
     compared, steps, quality = checked.comparison, checked.geometry, checked.quality
     if quality is not None:
         data["mesh"] = {
@@ -106,48 +100,32 @@ def summary(checked: Checked) -> dict[str, Any]:
 def _differences(compared: Comparison) -> dict[str, Any]:
     loaded = compared.is_loaded
 
-    def most(values: Any) -> float | None:
-        answered = values[loaded & ~np.isnan(values)]
-        return round(float(answered.max()), DIGITS) if answered.size else None
-
     return {
         "cases": int(loaded.sum()),
         "without_answer": compared.unanswered,
-        "worst_mm": most(compared.difference),
-        "worst_of_displacement": _number(compared.worst),
-        "median_of_displacement": _number(compared.median),
-        "worst_discretisation_mm": most(compared.discretisation),
-        "worst_assumptions_mm": most(compared.assumptions),
-        "worst_penalty_mm": most(compared.penalty_error),
-        "worst_left_of_displacement": _number(compared.left),
+        "worst_mm": largest(compared.difference[loaded]),
+        "worst_of_displacement": rounded(compared.worst),
+        "median_of_displacement": rounded(compared.median),
+        "worst_discretisation_mm": largest(compared.discretisation[loaded]),
+        "worst_assumptions_mm": largest(compared.assumptions[loaded]),
+        "worst_penalty_mm": largest(compared.penalty_error[loaded]),
+        "worst_left_of_displacement": rounded(compared.left),
     }
-
-
-def _number(value: float) -> float | None:
-    return None if math.isnan(value) else round(value, DIGITS)
 
 
 def _solid(checked: Checked, index: int) -> dict[str, Any]:
     stage = checked.stages[index]
     results = [result for key, result in checked.results.items() if key[0] == stage.name]
-    section, layers = stage.solid.section, stage.solid.heights.size - 1
     stable = [result.outcome.negative_eigenvalues for result in results]
     return {
         "mesh": stage.mesh,
         "c": stage.penalty,
         "element": stage.solid.element,
-        "triangles": len(section.triangles),
-        "layers": layers,
-        "unknowns": _unknowns(stage.solid),
-        "iterations": sum(result.outcome.statistics.iterations for result in results),
-        "most_iterations": max(result.outcome.statistics.iterations for result in results),
+        **size_summary(stage.solid),
+        **work_summary([result.outcome.statistics for result in results]),
         "converged": sum(result.status is Status.CONVERGED for result in results),
         "stability": _stability(stable),
     }
-
-
-def _unknowns(solid: Any) -> int:
-    return int(solid.body().unknowns)
 
 
 def _stability(negative: list[int | None]) -> str:
@@ -161,6 +139,4 @@ def _timing(checked: Checked) -> Iterator[tuple[str, float, str]]:
     """Processor time of the cases, summed over processes."""
     for stage in checked.stages:
         spent = [r.outcome.statistics for key, r in checked.results.items() if key[0] == stage.name]
-        for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):
-            name = what.removesuffix("_seconds").replace("seconds", "all")
-            yield f"{stage.name} {name}", sum(getattr(one, what) for one in spent), "s"
+        yield from timing_rows(stage.name, spent)

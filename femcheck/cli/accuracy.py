@@ -11,7 +11,7 @@ from rich.table import Table
 from beamopt.base.errors import InputError
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar, say_workers
+from beamopt.cli.progress import console, counted, say_workers
 from femcheck.accuracy.ending import Within, beam_difference
 from femcheck.accuracy.folder import run_accuracy
 from femcheck.accuracy.within import RungChoice
@@ -83,12 +83,7 @@ def _rung(text: str) -> RungChoice:
 def _followed(
     question: Question, accuracy: float, rung: RungChoice, folder: Path, request: RunRequest
 ) -> Within:
-    with progress_bar("models") as bar:
-        task = bar.add_task(escape(question.name), total=None, said="choosing")
-
-        def show(done: int, total: int, said: str) -> None:
-            bar.update(task, completed=done, total=total, said=said)
-
+    with counted("models", question.name, said="choosing") as show:
         try:
             return run_accuracy(
                 question,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 
@@ -12,7 +13,7 @@ from rich.table import Table
 
 from beamopt.cli.exit_codes import ExitCode, end_with
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar, say_workers
+from beamopt.cli.progress import console, counted, say_workers
 from beamopt.storage.writing import check_replaceable, csv_text, write_atomic
 from femcheck.cli.verdicts import code_of
 from femcheck.continuation.ended import Ended
@@ -33,16 +34,16 @@ def baseline_command(
 ) -> None:
     """Write baselines, and end with 1 if rungs contradict each other."""
     started = perf_counter()
-    _say_threads(workers)
+    say_workers(workers)
     try:
-        with _Shown() as shown:
+        with _parts() as tell:
             files = hold_designs(
                 designs,
                 out,
                 meshes,
                 force=force,
                 workers=workers,
-                callback=shown.tell,
+                callback=tell,
                 named=_findings_of(designs),
             )
     except ContradictionError as error:
@@ -66,14 +67,14 @@ def regress_command(
     if out is not None:
         check_replaceable(out, HEADER, "femcheck regress", force=force)
     started = perf_counter()
-    _say_threads(workers)
-    with _Shown() as shown:
+    say_workers(workers)
+    with _parts() as tell:
         found = regress(
             designs,
             baseline,
             meshes,
             workers=workers,
-            callback=shown.tell,
+            callback=tell,
             named=_findings_of(designs),
         )
     if out is not None:
@@ -141,28 +142,15 @@ def _cells(one: Moved) -> tuple[object, ...]:
     return (*place, *moved)
 
 
-def _say_threads(workers: int) -> None:
-    say_workers(workers)
+@contextmanager
+def _parts() -> Iterator[Callable[[str, str, int], None]]:
+    """A function to call with each part that is done: design, part, number of all parts."""
+    done = 0
+    with counted("parts", "rungs", lines=LINES) as show:
 
+        def tell(design: str, part: str, total: int) -> None:
+            nonlocal done
+            done += 1
+            show(done, total, f"{design}: {part}")
 
-class _Shown:
-    """Progress while rungs are computed."""
-
-    def __init__(self) -> None:
-        self.bar = progress_bar("parts")
-        self.done = 0
-
-    def __enter__(self) -> _Shown:
-        self.bar.start()
-        self.task = self.bar.add_task("rungs", total=None, said="starting")
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.bar.stop()
-
-    def tell(self, design: str, part: str, total: int) -> None:
-        """A part is done."""
-        self.done += 1
-        self.bar.update(self.task, total=total, completed=self.done, said=f"{design}: {part}")
-        if self.bar.disable and self.done * LINES // total > (self.done - 1) * LINES // total:
-            console.print(f"{self.done} of {total} parts", markup=False)
+        yield tell

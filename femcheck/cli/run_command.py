@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from rich.markup import escape
 
 from beamopt.base.errors import InputError
 from beamopt.cli.exit_codes import end_with, joined
 from beamopt.cli.findings import say_findings
-from beamopt.cli.progress import console, progress_bar, say_workers
+from beamopt.cli.progress import console, counted, say_workers
 from femcheck.check.check_design import check_design
 from femcheck.check.options import CheckOptions
 from femcheck.cli.prediction import report_prediction
@@ -66,19 +65,14 @@ def run_command(request: RunRequest) -> None:
 
 def _followed(
     judge: Callable[..., Result],
-    counted: str,
+    unit: str,
     subject: Subject,
     folder: Path,
     options: CheckOptions | PredictionOptions,
     request: RunRequest,
 ) -> Result:
     """Judge a design with a bar that shows how far it is."""
-    with progress_bar(counted) as bar:
-        task = bar.add_task(escape(subject.name), total=None, said="outline and meshes")
-
-        def show(done: int, total: int, said: str) -> None:
-            bar.update(task, completed=done, total=total, said=said)
-
+    with counted(unit, subject.name, said="outline and meshes") as show:
         try:
             return judge(
                 subject, folder, options, workers=request.workers, resume=True, progress=show

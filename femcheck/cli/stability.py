@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from time import perf_counter
 
-from rich.markup import escape
 from rich.table import Table
 
 from beamopt.base.errors import InputError
 from beamopt.cli.exit_codes import end_with
-from beamopt.cli.progress import console, progress_bar, say_workers
+from beamopt.cli.progress import console, counted, say_workers
 from femcheck.cli.verdicts import code_of
 from femcheck.stability.axes import AXES
 from femcheck.stability.found import AxisFound, agreement_of
@@ -47,20 +45,12 @@ def _check(axes: Sequence[str], redraw: bool) -> None:
 def _computed(out: Path, axes: Sequence[str], workers: int, resume: bool) -> list[AxisFound]:
     """Solve with a bar; without a terminal a line now and then, with the time that is left."""
     say_workers(workers)
-    started, first = perf_counter(), 0
-    with progress_bar("tasks") as bar:
-        task = bar.add_task("map", total=None, said="starting")
+    with counted("tasks", "map", lines=LINES) as tell:
 
         def show(key: Key, result: Result, done: int, total: int) -> None:
-            nonlocal first
-            first = first or done - 1
             name, column, _ = key
             label = " ".join(AXES[name].columns[column].label.split())
-            said = f"{name} {label}: {result.ending.value}"
-            bar.update(task, completed=done, total=total, said=escape(said))
-            if bar.disable and done * LINES // total > (done - 1) * LINES // total:
-                left = (perf_counter() - started) / (done - first) * (total - done)
-                console.print(f"{done} of {total} tasks, {left / 60:.1f} min left")
+            tell(done, total, f"{name} {label}: {result.ending.value}")
 
         try:
             return run_map(

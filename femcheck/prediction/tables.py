@@ -19,6 +19,14 @@ from femcheck.prediction.ray_trace import TRACK
 from femcheck.prediction.two_meshes import AGREE, GROWTH, MARGIN, Agreement, RayEnds
 from femcheck.prediction.verdict import advice, verdict
 from femcheck.solved.cells import DIGITS, both, cells, plain
+from femcheck.solved.summaries import (
+    largest,
+    rounded,
+    section_summary,
+    size_summary,
+    timing_rows,
+    work_summary,
+)
 
 __all__ = ["tables_of"]
 
@@ -106,7 +114,7 @@ def _strain_cells(strains: FloatArray) -> list[object]:
 
 def _summary(found: Prediction) -> dict[str, Any]:
     """The prediction without times."""
-    options, outline = found.options, found.subject.outline
+    options = found.options
     data: dict[str, Any] = {
         "design": found.subject.name,
         "verdict": {
@@ -131,19 +139,7 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "length_mm": found.subject.design.actuator.length,
             "slenderness": round(found.subject.slenderness, DIGITS),
         },
-        "section": {
-            "areas_mm2": [round(value, DIGITS) for value in outline.moments.raw[:, 0].tolist()],
-            "chambers": [len(outline.chambers_of(supply)) for supply in (1, 2, 3)],
-            "islands": len(outline.islands),
-            "faults": [str(fault) for fault in found.subject.design.findings],
-        },
-    }
-    moved = found.subject.sealing_moved
-    if moved is not None:
-        data["sealing_moved_mm"] = {
-            "worst": _most(moved),
-            "median": _number(float(np.median(moved))),
-        }
+    } | section_summary(found.subject)
     if found.has_answers:
         data["stable_box_kpa"] = round(found.stable_box, DIGITS)
         data["safe_box"] = _safe_box(found)
@@ -151,19 +147,19 @@ def _summary(found: Prediction) -> dict[str, Any]:
             "agree_up_to_ratio": AGREE,
             "rays": len(found.rays),
             "rays_on_both": sum(key[0] == "coarse" for key in found.results),
-            "largest_ratio": _most(np.array([one.ratio for one in found.compared])),
+            "largest_ratio": largest(np.array([one.ratio for one in found.compared])),
         }
         data["limits"] = [_limit(found, one) for one in found.compared]
         data["growth_at_the_end"] = {
-            found.rays[number].text: _number(found.growth(number)) for number in _principal(found)
+            found.rays[number].text: rounded(found.growth(number)) for number in _principal(found)
         }
         data["difference"] = {
             "cases": int(found.is_loaded.sum()),
             "without_answer": found.unanswered,
-            "worst_of_displacement": _number(found.worst),
-            "median_of_displacement": _number(found.median),
-            "worst_between_meshes_mm": _most(found.discretisation),
-            "worst_between_meshes_of_displacement": _number(found.mesh_share),
+            "worst_of_displacement": rounded(found.worst),
+            "median_of_displacement": rounded(found.median),
+            "worst_between_meshes_mm": largest(found.discretisation),
+            "worst_between_meshes_of_displacement": rounded(found.mesh_share),
         }
         data["solids"] = [_solid(found, mesh) for mesh in found.solids]
     return data
@@ -186,13 +182,13 @@ def _safe_box(found: Prediction) -> dict[str, Any]:
     box = found.safe_box
     mesh, number = (None, None) if box.key is None else box.key
     return {
-        "kpa": _number(box.pressure),
+        "kpa": rounded(box.pressure),
         "margin": MARGIN,
         "largest_growth": GROWTH,
         "limited_by": box.why.name,
         "of": None if number is None else found.rays[number].text,
         "mesh": mesh,
-        "there_kpa": _number(box.at),
+        "there_kpa": rounded(box.at),
     }
 
 
@@ -205,28 +201,19 @@ def _limit(found: Prediction, ends: RayEnds) -> dict[str, Any]:
         "of": ray.text,
         "status": result.status.value,
         "ended": Ended(result.status).key,
-        "ends_at_kpa": _number(result.critical),
+        "ends_at_kpa": rounded(result.critical),
         "status_on_the_coarse_mesh": None if coarse is None else coarse.status.value,
         "ended_on_the_coarse_mesh": None if coarse is None else Ended(coarse.status).key,
-        "on_the_coarse_mesh_kpa": None if coarse is None else _number(coarse.critical),
-        "ratio": _number(ends.ratio),
+        "on_the_coarse_mesh_kpa": None if coarse is None else rounded(coarse.critical),
+        "ratio": rounded(ends.ratio),
         "ratio_is_a_lower_bound": ends.is_bound,
         "certain": ends.agreement is Agreement.AGREE,
-        "volume_ratios": [_number(value) for value in ratios.tolist()],
-        "largest_stretch": None if last is None else _number(last.stretch),
+        "volume_ratios": [rounded(value) for value in ratios.tolist()],
+        "largest_stretch": None if last is None else rounded(last.stretch),
         "largest_stretch_at_mm": None
         if last is None
         else [round(value, 3) for value in last.stretch_at.tolist()],
     }
-
-
-def _number(value: float) -> float | None:
-    return round(value, DIGITS) if math.isfinite(value) else None
-
-
-def _most(values: FloatArray) -> float | None:
-    known = values[np.isfinite(values)]
-    return round(float(known.max()), DIGITS) if known.size else None
 
 
 def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
@@ -236,12 +223,9 @@ def _solid(found: Prediction, mesh: str) -> dict[str, Any]:
         "mesh": mesh,
         "element": solid.element,
         "form": "displacements" if found.law.volumetric_compliance is None else "mixed",
-        "triangles": len(solid.section.triangles),
-        "layers": solid.heights.size - 1,
-        "unknowns": solid.body().unknowns,
+        **size_summary(solid),
         "rays": len(results),
-        "iterations": sum(result.statistics.iterations for result in results),
-        "most_iterations": max(result.statistics.iterations for result in results),
+        **work_summary([result.statistics for result in results]),
         "stability": "checked by inertia" if found.is_checked else "not checked",
     }
 
@@ -250,6 +234,4 @@ def _timing(found: Prediction) -> Iterator[tuple[str, float, str]]:
     """Processor time of the rays, summed over processes."""
     for mesh in found.solids:
         spent = [result.statistics for key, result in found.results.items() if key[0] == mesh]
-        for what in ("seconds", "assembly_seconds", "factor_seconds", "solve_seconds"):
-            name = what.removesuffix("_seconds").replace("seconds", "all")
-            yield f"{mesh} {name}", sum(getattr(one, what) for one in spent), "s"
+        yield from timing_rows(mesh, spent)

@@ -17,9 +17,10 @@ def to_html(text: str) -> Markup:
     A first heading of the first level is left out: the page has a title of its own. The others
     stand two levels lower.
     """
-    _, first, rest = text.partition("\n") if text.startswith("# ") else ("", "", text)
     parser = MarkdownIt("zero").enable(RULES)
-    tokens = parser.parse(first + rest)
+    tokens = parser.parse(text)
+    if tokens and (tokens[0].type, tokens[0].tag) == ("heading_open", "h1"):
+        tokens = tokens[3:]  # it opens, holds its text, and closes
     for token in tokens:
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{min(2 + int(token.tag[1:]), 6)}"

@@ -1,15 +1,15 @@
 """Folders that reports are made of: a check and a prediction that take seconds."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 
-import femcheck.prediction.predict_design
 import femcheck.solved.picture
 from femcheck.check.check_design import check_design
+from femcheck.prediction.prediction import Prediction
 from femcheck.report.page import report_page
 from tests.femcheck.check.small import here, quick_options, small_subject
-from tests.femcheck.prediction.small import predict
 from tests.femcheck.report.folders import figure_folder
 
 
@@ -24,13 +24,10 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def predicted(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A prediction that has some answers, and limits below the highest level. Ten seconds."""
+def predicted(limited: tuple[Prediction, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of a prediction that has some answers, and limits below the highest level."""
     folder = tmp_path_factory.mktemp("report") / "predicted"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(femcheck.solved.picture, "draw", lambda *scene: False)
-        predict(folder)
-    return folder
+    return Path(shutil.copytree(limited[1], folder))
 
 
 @pytest.fixture(scope="session")
