@@ -47,7 +47,7 @@ from femcheck.report.solid_run import read_solid_run
 from femcheck.report.wording import meaning
 from femcheck.solid.winding import Wound
 from femcheck.stability.axes import AXES
-from femcheck.stability.journal import MapJournal
+from femcheck.stability.journal import ASKED, results_in
 from tests.femcheck.check.small import here, quick_options, small_subject
 from tests.femcheck.made_up import NEO, MadeUp, powers, question_of
 from tests.femcheck.regression.small import held, saved
@@ -232,9 +232,11 @@ def test_a_report_says_the_same_of_a_folder(tmp_path: Path) -> None:
 
 
 def test_the_map_of_stability_is_read() -> None:
-    before = MapJournal(REPORTS / "stability" / "journal.jsonl", AXES).results
+    journal = LineJournal(REPORTS / "stability" / "journal.jsonl", None, "map")
+    assert journal.asked == ASKED
+    before = results_in(journal, AXES)
     with reworded():
-        after = MapJournal(REPORTS / "stability" / "journal.jsonl", AXES).results
+        after = results_in(journal, AXES)
     assert {key: one.ending for key, one in before.items()} == {
         key: one.ending for key, one in after.items()
     }

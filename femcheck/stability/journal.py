@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter
@@ -16,52 +15,42 @@ from femcheck.stability.ending import MapEnding
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.work import FINER, TRACE, Key, Result
 
-__all__ = ["SCHEMA", "MapJournal"]
+__all__ = ["ASKED", "SUBJECT", "line_of", "results_in"]
 
-SCHEMA = "femcheck-stability/1"
+ASKED, SUBJECT = {"schema": "femcheck-stability/1"}, "stability map of solids"
 NOT_A_NUMBER = None  # JSON has no NaN
 
 
-class MapJournal:
-    """A file with a line that says what it is, and one a task.
-
-    Parameters
-    ----------
-    path : of the file; made where there is none.
-    axes : what is asked for. Lines of other axes stay for the day they are.
+def results_in(journal: LineJournal, axes: Mapping[str, Axis]) -> dict[Key, Result]:
+    """Results of a journal that are of `axes`; lines of others stay for the day they are asked for.
 
     Raises
     ------
-    InputError : the file that is there is no journal, or its axes are not what they are now.
+    InputError : the journal is damaged, or its axes are not what they are now.
     """
-
-    def __init__(self, path: Path, axes: Mapping[str, Axis]) -> None:
-        self.results: dict[Key, Result] = {}
-        self._lines = LineJournal(path, {"schema": SCHEMA}, "stability map of solids")
-        read = self._lines.read(lambda data: (_key(data), str(data["question"]), _result(data)))
-        for key, question, result in read:
-            self._take(key, question, result, axes)
-
-    def _take(self, key: Key, question: str, result: Result, axes: Mapping[str, Axis]) -> None:
+    results: dict[Key, Result] = {}
+    read = journal.read(lambda data: (_key(data), str(data["question"]), _result(data)))
+    for key, question, result in read:
         name, column, number = key
         if name not in axes:
-            return
+            continue
         axis = axes[name]
         known = column < len(axis.columns) and number < len(axis.pressures)
         if not known or question != axis.digest(column):
             said = "what is there is of another map (specimens, pressures); name another folder"
-            raise InputError(self._lines.path, f"axis {name}", None, said)
-        self.results[key] = result
+            raise InputError(journal.path, f"axis {name}", None, said)
+        results[key] = result
+    return results
 
-    def add(self, axis: Axis, key: Key, result: Result) -> None:
-        """Keep a result."""
-        self.results[key] = result
-        name, column, number = key
-        data = {"axis": name, "column": column, "number": number, "question": axis.digest(column)}
-        data |= asdict(result) | {"ending": result.ending.name}
-        if isinstance(result, TraceResult):
-            data["track"] = [[_or_null(value) for value in row] for row in result.track]
-        self._lines.add(data)
+
+def line_of(axis: Axis, key: Key, result: Result) -> dict[str, Any]:
+    """A result as a line of a journal."""
+    name, column, number = key
+    data = {"axis": name, "column": column, "number": number, "question": axis.digest(column)}
+    data |= asdict(result) | {"ending": result.ending.name}
+    if isinstance(result, TraceResult):
+        data["track"] = [[_or_null(value) for value in row] for row in result.track]
+    return data
 
 
 TRACES = TypeAdapter(TraceResult)

@@ -10,15 +10,16 @@ from beamopt.base.errors import InputError
 from beamopt.base.processes import processes
 from beamopt.base.provenance import provenance, thread_settings
 from beamopt.plot.style import save_figure
-from beamopt.storage.campaign import Campaign, Pool
+from beamopt.storage.campaign import Campaign, Pool, claimed_journal
 from beamopt.storage.input_file import read_json
-from beamopt.storage.result_folder import FolderKind, claimed
+from beamopt.storage.line_journal import LineJournal
+from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.writing import json_text, write_atomic
 from femcheck.solved.folder import PACKAGES
 from femcheck.stability.axis import Axis
 from femcheck.stability.figure import map_figure
 from femcheck.stability.found import AxisFound, found_of
-from femcheck.stability.journal import MapJournal
+from femcheck.stability.journal import ASKED, SUBJECT, line_of, results_in
 from femcheck.stability.reading import reading
 from femcheck.stability.tables import tables_of, timing_csv
 from femcheck.stability.work import Key, MapWork, Result
@@ -62,37 +63,37 @@ def run_map(
     ------
     InputError : `out` holds something else, or the map of other specimens.
     """
-    with claimed(out, KIND, resume=resume):
-        journal = MapJournal(out / JOURNAL, axes)
-        made = _solve(out, journal, axes, wanted, workers, progress, pool)
-        return _write(out, axes, journal.results, made, figures)
+    with claimed_journal(out, KIND, ASKED, SUBJECT, resume=resume) as journal:
+        results = results_in(journal, axes)
+        made = _solve(journal, results, axes, wanted, Campaign(workers, pool), progress)
+        return _write(out, axes, results, made, figures)
 
 
 def _solve(
-    out: Path,
-    journal: MapJournal,
+    journal: LineJournal,
+    results: dict[Key, Result],
     axes: Mapping[str, Axis],
     wanted: Collection[str] | None,
-    workers: int,
+    campaign: Campaign,
     progress: Progress | None,
-    pool: Pool,
 ) -> dict[str, Any]:
-    """Solve what is not solved yet; returns what the map is computed with."""
-    known = {key: one for key, one in journal.results.items() if not one.ending.is_interrupted}
+    """Solve what is not among `results` yet; returns what the map is computed with."""
+    known = {key: one for key, one in results.items() if not one.ending.is_interrupted}
     chosen = {name: axis for name, axis in axes.items() if wanted is None or name in wanted}
     work = MapWork(chosen, {key: one for key, one in known.items() if key[0] in chosen})
     before, total = len(work.results), len(work.keys)
 
     def keep(key: Key, result: Result) -> None:
-        journal.add(axes[key[0]], key, result)
+        results[key] = result
+        journal.add(line_of(axes[key[0]], key, result))
         if progress is not None:
             progress(key, result, len(work.results), total)
 
-    Campaign(workers, pool).solve(work, keep)
-    threads = "1" if pool is processes else thread_settings()["MKL_NUM_THREADS"]
-    made = {"workers": workers, "threads_of_a_worker": threads, **provenance(PACKAGES)}
+    campaign.solve(work, keep)
+    threads = "1" if campaign.pool is processes else thread_settings()["MKL_NUM_THREADS"]
+    made = {"workers": campaign.workers, "threads_of_a_worker": threads, **provenance(PACKAGES)}
     if len(work.results) == before:  # nothing was solved now
-        made = _computed_before(out) or made
+        made = _computed_before(journal.path.parent) or made
     return made
 
 
@@ -108,12 +109,12 @@ def redraw_map(out: Path, axes: Mapping[str, Axis], *, figures: bool = True) -> 
         raise InputError(path, "", None, "no such file: there is no map to draw again")
     if path.is_file() and path.stat().st_size == 0:  # a journal would begin in it
         raise InputError(path, "", None, "is empty: there is no map to draw again")
-    with claimed(out, KIND, resume=True):
-        journal = MapJournal(path, axes)
-        if not journal.results:
+    with claimed_journal(out, KIND, ASKED, SUBJECT, resume=True) as journal:
+        results = results_in(journal, axes)
+        if not results:
             raise InputError(path, "", None, f"holds nothing of {', '.join(axes)}")
         computed = _computed_before(out) or provenance(PACKAGES)
-        return _write(out, axes, journal.results, computed, figures)
+        return _write(out, axes, results, computed, figures)
 
 
 def _computed_before(out: Path) -> dict[str, Any]:

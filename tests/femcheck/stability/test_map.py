@@ -8,8 +8,9 @@ import pytest
 import femcheck.stability.work
 from beamopt.base.errors import InputError
 from beamopt.base.processes import processes
+from beamopt.storage.line_journal import LineJournal
 from femcheck.stability.ending import MapEnding
-from femcheck.stability.journal import MapJournal
+from femcheck.stability.journal import ASKED, line_of, results_in
 from femcheck.stability.solve import CellResult, TraceResult
 from femcheck.stability.specimen import Specimen
 from femcheck.stability.stability_map import FILES, redraw_map
@@ -186,7 +187,7 @@ def test_a_folder_that_is_in_use_is_refused(whole: Path, tmp_path: Path) -> None
         make(whole)
     with pytest.raises(InputError, match="no map to draw again"):
         redraw_map(tmp_path / "nowhere", axes_of())
-    MapJournal(tmp_path / "journal.jsonl", axes_of())
+    LineJournal(tmp_path / "journal.jsonl", ASKED, "map")
     with pytest.raises(InputError, match="holds nothing"):
         redraw_map(tmp_path, axes_of())
 
@@ -200,13 +201,13 @@ def test_a_line_says_all_there_is_to_know(tmp_path: Path) -> None:
         ("length", 1, 0): told_cell(specimen, 4.0),
         ("length", 1, 2): told_cell(specimen, 12.0),
     }
-    journal = MapJournal(tmp_path / "journal.jsonl", axes)
+    journal = LineJournal(tmp_path / "journal.jsonl", ASKED, "map")
     for key, result in results.items():
-        journal.add(axis, key, result)
+        journal.add(line_of(axis, key, result))
     path = tmp_path / "journal.jsonl"
-    read = MapJournal(path, axes).results
+    read = results_in(LineJournal(path, ASKED, "map"), axes)
     assert repr(read) == repr(results)  # not a number is not equal to itself
     for damaged in flipped(path.read_bytes()):
         path.write_bytes(damaged)
         with pytest.raises(InputError, match=r"journal\.jsonl: line [1-4]"):
-            MapJournal(path, axes)
+            results_in(LineJournal(path, ASKED, "map"), axes)
