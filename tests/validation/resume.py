@@ -199,8 +199,8 @@ CHAINS = (
     ),
     Chain(
         "map of rods",
-        ("stability", "--samples", "8", "--workers", "2"),
-        3,
+        ("stability", "--samples", "4", "--workers", "2"),
+        2,
         apart=("reading.md", "stability.svg", "stability.png"),
         processes=True,
     ),
@@ -214,8 +214,7 @@ CHAINS = (
     Chain(
         "accuracy",
         ("femcheck", "run", "{small}", *SILICONE, "--accuracy", "5mm"),
-        3,
-        processes=True,
+        2,
     ),
     Chain(
         "baseline", ("femcheck", "baseline", "{small}", "--force"), 4, goes_on=False, processes=True
@@ -227,9 +226,12 @@ CHAINS = (
         apart=("chart.svg", "chart.png", "reading.md", "cheapest.csv"),
         processes=True,
     ),
-    Chain("map", ("femcheck", "stability", "--axis", "tube"), 3, processes=True),
+    Chain("map", ("femcheck", "stability", "--axis", "tube"), 2),
 )
-"""Every command that writes a folder, but for a search."""
+"""Every command that writes a folder, but for a search.
+
+Processes of the longest two are killed in `tests/hostile/test_killed_workers.py` only.
+"""
 
 
 def checks(full: bool) -> list[Check]:
