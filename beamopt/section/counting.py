@@ -9,6 +9,7 @@ import numpy as np
 from beamopt.base.arrays import FloatArray, IndexArray, LabelArray
 from beamopt.base.compiled import compiled
 from beamopt.section.grid import PolarGrid
+from beamopt.section.pieces import join
 from beamopt.section.runs import Runs
 from beamopt.section.symmetry import Symmetry
 
@@ -79,28 +80,12 @@ def count_chambers(labels: LabelArray, runs: Runs, periodic: bool, counts: Index
                 beside, column = over, first
                 while beside < begin and column < ends[k]:
                     if labels[i - 1, column] == kind:
-                        counts[kind - 1] -= _join(root, beside, k)
+                        counts[kind - 1] -= join(root, beside, k)
                     column = ends[beside]
                     beside += 1
             first = ends[k]
         if periodic and row[0] > 0 and row[0] == row[columns - 1]:
-            counts[row[0] - 1] -= _join(root, begin, after - 1)
-
-
-@compiled
-def _join(root: IndexArray, a: int, b: int) -> bool:
-    """Make two chambers one; whether they were two."""
-    one, other = _root(root, a), _root(root, b)
-    root[max(one, other)] = min(one, other)
-    return one != other
-
-
-@compiled
-def _root(root: IndexArray, k: int) -> int:
-    while root[k] != k:
-        root[k] = root[root[k]]
-        k = root[k]
-    return k
+            counts[row[0] - 1] -= join(root, begin, after - 1)
 
 
 @compiled

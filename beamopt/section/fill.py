@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamopt.base.arrays import IndexArray, LabelArray
+from beamopt.base.arrays import LabelArray
 from beamopt.base.compiled import compiled
+from beamopt.section.pieces import connected_runs
 
 __all__ = ["fill_islands", "fill_small_chambers"]
 
@@ -16,7 +17,7 @@ def fill_small_chambers(labels: LabelArray, periodic: bool, smallest: float) -> 
 
     A chamber is what hangs together over the four neighbours, round the ring where `periodic`.
     """
-    row, first, last, root = _connected_runs(labels, periodic)
+    row, first, last, root = connected_runs(labels, periodic)
     size = np.zeros(row.size, dtype=np.int64)
     for k in range(row.size):
         size[root[k]] += last[k] - first[k]
@@ -34,7 +35,7 @@ def fill_islands(labels: LabelArray, periodic: bool, has_hole: bool) -> None:
     `has_hole`, a sector's ends unless `periodic`) and no chambers but one supply's; a wall around
     another supply's chamber stays. So does the largest piece, whatever it touches.
     """
-    row, first, last, root = _connected_runs(labels, periodic)
+    row, first, last, root = connected_runs(labels, periodic)
     rows, columns = labels.shape
     size = np.zeros(row.size, dtype=np.int64)
     stays = np.zeros(row.size, dtype=np.bool_)
@@ -65,58 +66,3 @@ def fill_islands(labels: LabelArray, periodic: bool, has_hole: bool) -> None:
             if bits == 1 << supply:
                 for j in range(first[k], last[k]):
                     labels[row[k], j] = supply
-
-
-@compiled
-def _connected_runs(
-    labels: LabelArray, periodic: bool
-) -> tuple[IndexArray, IndexArray, IndexArray, IndexArray]:
-    """Runs of equal elements: row, first column, column after the last, a run of the same piece."""
-    rows, columns = labels.shape
-    total = rows
-    for i in range(rows):
-        here, after = labels[i], labels[i, 1:]
-        for j in range(columns - 1):
-            total += here[j] != after[j]
-    row = np.empty(total, dtype=np.int64)
-    first = np.empty(total, dtype=np.int64)
-    last = np.empty(total, dtype=np.int64)
-    root = np.arange(total)
-    above = k = 0
-    for i in range(rows):
-        begin = k
-        row[k], first[k] = i, 0
-        for j in range(1, columns):
-            if labels[i, j] != labels[i, j - 1]:
-                last[k] = j
-                k += 1
-                row[k], first[k] = i, j
-        last[k] = columns
-        k += 1
-        if periodic and labels[i, 0] == labels[i, columns - 1]:
-            _join(root, begin, k - 1)
-        over, under = above, begin
-        while i > 0 and over < begin and under < k:
-            if labels[i - 1, first[over]] == labels[i, first[under]]:
-                _join(root, over, under)
-            end = min(last[over], last[under])
-            over += last[over] == end
-            under += last[under] == end
-        above = begin
-    for m in range(total):
-        root[m] = _root(root, m)
-    return row, first, last, root
-
-
-@compiled
-def _root(root: IndexArray, k: int) -> int:
-    while root[k] != k:
-        root[k] = root[root[k]]
-        k = root[k]
-    return k
-
-
-@compiled
-def _join(root: IndexArray, a: int, b: int) -> None:
-    one, other = _root(root, a), _root(root, b)
-    root[max(one, other)] = min(one, other)

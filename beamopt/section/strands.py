@@ -12,22 +12,9 @@ from numpy.typing import NDArray
 
 from beamopt.base.arrays import IndexArray, LabelArray
 from beamopt.base.compiled import compiled
+from beamopt.section.pieces import join, lowest
 
 __all__ = ["join_corners", "label_strands", "number_corners"]
-
-
-@compiled
-def _root(parent: IndexArray, k: int) -> int:
-    while parent[k] != k:
-        parent[k] = parent[parent[k]]
-        k = parent[k]
-    return k
-
-
-@compiled
-def _join(parent: IndexArray, k: int, m: int) -> None:
-    k, m = _root(parent, k), _root(parent, m)
-    parent[max(k, m)] = min(k, m)
 
 
 @compiled
@@ -49,7 +36,7 @@ def label_strands(
             if left >= 0:
                 strand[i, j] = left
                 if above >= 0 and above != left:
-                    _join(parent, left, above)
+                    join(parent, left, above)
             elif above >= 0:
                 strand[i, j] = above
             else:
@@ -63,7 +50,7 @@ def label_strands(
             number[k] = strands
             strands += 1
         else:
-            number[k] = number[_root(parent, k)]
+            number[k] = number[lowest(parent, k)]
     cells = np.empty((strands, 2), dtype=np.int64)
     for i in range(rows):
         for j in range(columns):
@@ -97,27 +84,27 @@ def join_corners(
             for j in range(columns):
                 s, t = int(strand[i - 1, j]), int(strand[i, j])
                 if s >= 0 and t >= 0:
-                    _join(corner, 4 * s + 2, 4 * t)
-                    _join(corner, 4 * s + 3, 4 * t + 1)
-                    _join(piece, s, t)
+                    join(corner, 4 * s + 2, 4 * t)
+                    join(corner, 4 * s + 3, 4 * t + 1)
+                    join(piece, s, t)
     for j in range(columns):
         before = j - 1 if j > 0 else columns - 1
         if (j > 0 and column_cell[j] != column_cell[before]) or (j == 0 and periodic):
             for i in range(rows):
                 s, t = int(strand[i, before]), int(strand[i, j])
                 if s >= 0 and t >= 0:
-                    _join(corner, 4 * s + 1, 4 * t)
-                    _join(corner, 4 * s + 3, 4 * t + 2)
-                    _join(piece, s, t)
+                    join(corner, 4 * s + 1, 4 * t)
+                    join(corner, 4 * s + 3, 4 * t + 2)
+                    join(piece, s, t)
     if has_axis:
         for j in range(columns):
             s = int(strand[0, j])
             if s >= 0:
-                _join(corner, 4 * s, 4 * s + 1)
+                join(corner, 4 * s, 4 * s + 1)
     for k in range(4 * count):
-        corner[k] = _root(corner, k)
+        corner[k] = lowest(corner, k)
     for s in range(count):
-        piece[s] = _root(piece, s)
+        piece[s] = lowest(piece, s)
     return corner, piece
 
 
