@@ -6,9 +6,10 @@ import json
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from beamopt.base.arrays import FloatArray
 from beamopt.base.errors import InputError, NoEquilibriumError
@@ -20,8 +21,7 @@ from beamopt.rod.pressure_tree import parents_on_grid
 from beamopt.rod.response import LinearResponse, linear_response
 from beamopt.rod.status import RodStatus
 from beamopt.scene.actuator import Actuator, Loading, RodRules, rod_model
-from beamopt.scene.design_keys import DesignKeys
-from beamopt.scene.drawn_chambers import Points, lost_in_raster
+from beamopt.scene.drawn_chambers import DrawnChamber, Points, check_drawing, lost_in_raster
 from beamopt.scene.grid_keys import Grid, Levels, WallElements
 from beamopt.scene.rod_choice import Climb, climb
 from beamopt.scene.seal_keys import Seal
@@ -30,7 +30,8 @@ from beamopt.section.drawing import Shape
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.moments import Moments
 from beamopt.section.saint_venant import SaintVenant, section_saint_venant
-from beamopt.storage.checked_keys import parse
+from beamopt.storage.checked_keys import CheckedKeys, parse, quantity
+from beamopt.storage.free_values import FreeTable
 from beamopt.storage.input_file import read_json
 from beamopt.storage.writing import json_text, write_atomic
 from beamopt.target.workspace import Workspace, pressure_grid
@@ -38,6 +39,7 @@ from beamopt.target.workspace import Workspace, pressure_grid
 __all__ = [
     "MOST_INLINE",
     "Design",
+    "DesignKeys",
     "Grid",
     "Levels",
     "WallElements",
@@ -45,6 +47,50 @@ __all__ = [
     "section_values",
     "with_sections",
 ]
+
+
+class DesignKeys(CheckedKeys):
+    """Keys of a design file."""
+
+    schema_: Literal["beamopt-design/1"] = Field(alias="schema")
+    grid: Grid = quantity(..., "inner_radius, outer_radius, radial, angular, start, stop")
+    feature_points: Points | None = quantity(None, "x, y, type of every feature point")
+    drawing: tuple[DrawnChamber, ...] | None = quantity(None, "a list of drawn chambers")
+    wall_elements: WallElements = quantity(
+        ..., "elements of a wall between supplies, even; none if sealed", low=0, high=64
+    )
+    seal: Seal = quantity(..., "skin, wall, islands; also rounding, smallest_chamber")
+    actuator: Actuator = quantity(..., "length, youngs_modulus, shear_modulus")
+    pressures: Levels = quantity(..., "three levels, ascending", unit="kPa")
+    rod: RodRules = RodRules()
+    loads: Loading = Loading()
+    notes: FreeTable = Field(default={}, description="anything worth keeping; not read")
+
+    @model_validator(mode="after")
+    def _is_one_section(self) -> DesignKeys:
+        if (self.feature_points is None) == (self.drawing is None):
+            raise ValueError("exactly one of feature_points and drawing must be given")
+        self.seal.check_fits(self.grid.build())
+        if self.drawing:
+            check_drawing(self.drawing, self.grid.build())
+        return self
+
+    def __repr__(self) -> str:
+        points, ring = self.feature_points, self.grid
+        made_of = (
+            f"{len(self.drawing or ())} drawn chambers"
+            if points is None
+            else f"{len(points.x)} feature points"
+        )
+        sealed = f"sealed by {self.seal.skin:g} mm" if self.seal.rules.sealed else "unsealed"
+        return (
+            f"<Design: {made_of}, r {ring.inner_radius:g}…{ring.outer_radius:g} mm, {sealed}, "
+            f"H = {self.actuator.length:g} mm, E = {self.actuator.youngs_modulus:g} kPa, "
+            f"up to {self.pressures[-1]:g} kPa>"
+        )
+
+    __str__ = __repr__
+
 
 MOST_INLINE = 4 * 2**20
 """Most characters of all sections of segments: a folder that holds the scene has them in it."""

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamopt.search.mutation import direct, mutate, weighted
+from beamopt.search.variation import direct, mutate, weighted
 from beamopt.section.feature_points import FeaturePoints
 from beamopt.section.grid import PolarGrid
 from beamopt.section.neighbours import neighbour_edges
