@@ -13,7 +13,7 @@ from scipy.integrate import solve_bvp
 from scipy.interpolate import PPoly
 
 from beamopt.base.arrays import FloatArray
-from beamopt.comparators.following import Attempt, not_representable, solve_cases
+from beamopt.comparators.following import Attempt, solve_cases
 from beamopt.comparators.growing import under
 from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
 from beamopt.comparators.quaternion_form import (
@@ -67,7 +67,7 @@ class Collocation:
     def solve(self, rod: Rod, rest: FloatArray, resolution: int) -> RodSolution:
         """Solve for the rest strains (n, segments, 6) of n cases, to 10^−resolution."""
         if len(rod.base.hinges):
-            return not_representable(rod, len(rest))
+            return RodSolution.unsolved(len(rest), RodStatus.NOT_REPRESENTABLE, rod.length)
         model = loaded_rod(rod, 1)
         cases = [
             _Case(rod, model._replace(rest=one), self, resolution)

@@ -11,11 +11,10 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from beamopt.base.arrays import FloatArray
-from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 
-__all__ = ["Attempt", "BoundaryProblem", "Followed", "follow", "not_representable", "solve_cases"]
+__all__ = ["Attempt", "BoundaryProblem", "Followed", "follow", "solve_cases"]
 
 LEAST_STEP = 1 / 1024
 """Of the loads already carried: shorter steps are given up."""
@@ -132,17 +131,3 @@ def solve_cases(
             tips[i] = lines[i, -1]
     error = np.full(n, np.nan)
     return RodSolution(tuple(status), tips, rotations, factor, error, iterations, stations, lines)
-
-
-def not_representable(rod: Rod, n: int) -> RodSolution:
-    """The answer to a rod that a method has no equations for: no case is solved."""
-    return RodSolution(
-        (RodStatus.NOT_REPRESENTABLE,) * n,
-        np.full((n, 3), np.nan),
-        np.full((n, 3, 3), np.nan),
-        np.zeros(n),
-        np.full(n, np.nan),
-        np.zeros(n, dtype=np.int64),
-        np.array([0.0, rod.length]),
-        np.full((n, 2, 3), np.nan),
-    )

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from beamopt.base.arrays import FloatArray
 from beamopt.base.compiled import compiled
 from beamopt.comparators.elimination import assign, eliminate, solve, substitute
-from beamopt.comparators.following import Attempt, not_representable, solve_cases
+from beamopt.comparators.following import Attempt, solve_cases
 from beamopt.comparators.growing import under
 from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
 from beamopt.comparators.se3 import rotation_vector
 from beamopt.comparators.sections import Sections, draw, largest_wrench, move, take
-from beamopt.comparators.shooting import HALVINGS, ITERATIONS, stations_of
+from beamopt.comparators.shooting import HALVINGS, ITERATIONS, stations_of, status_of
 from beamopt.comparators.sweep import (
     WORK,
     StepRule,
@@ -67,7 +67,7 @@ class MultipleShooting:
     def solve(self, rod: Rod, rest: FloatArray, resolution: int) -> RodSolution:
         """Solve for the rest strains (n, segments, 6) of n cases, with `resolution` steps."""
         if len(rod.base.hinges):
-            return not_representable(rod, len(rest))
+            return RodSolution.unsolved(len(rest), RodStatus.NOT_REPRESENTABLE, rod.length)
         model = loaded_rod(rod, resolution)
         cases = [
             _Case(rod, model._replace(rest=one), self.stepper, self.intervals)
@@ -103,10 +103,7 @@ class _Case:
         rest, shape = self.unloaded(), guess.copy()
         model = under(self.model, factor, rest.values[-1, :3], rest.frames[-1])
         least, iterations = shoot_between(self.stepper, model, self.segments, shape)
-        if np.isnan(least):
-            return Attempt(RodStatus.DIVERGED, shape, iterations)
-        status = RodStatus.CONVERGED if least > 0 else RodStatus.CRUSHED
-        return Attempt(status, shape, iterations)
+        return Attempt(status_of(least), shape, iterations)
 
     def drawn(self, shape: Sections) -> tuple[FloatArray, FloatArray]:
         line = draw(self.stepper, self.model, self.segments, shape, False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from beamopt.base.arrays import FloatArray
 from beamopt.base.compiled import compiled
 from beamopt.comparators.elimination import assign, solve
-from beamopt.comparators.following import Attempt, not_representable, solve_cases
+from beamopt.comparators.following import Attempt, solve_cases
 from beamopt.comparators.growing import under
 from beamopt.comparators.loaded import Loaded, at_rest, loaded_rod
 from beamopt.comparators.sweep import (
@@ -28,7 +28,7 @@ from beamopt.rod.rod import Rod
 from beamopt.rod.solution import RodSolution
 from beamopt.rod.status import RodStatus
 
-__all__ = ["HALVINGS", "ITERATIONS", "Shooting", "shoot", "stations_of"]
+__all__ = ["HALVINGS", "ITERATIONS", "Shooting", "shoot", "stations_of", "status_of"]
 
 TOLERANCE = 1e-10
 """What may be left at the tip, as a share of all forces, before the last correction."""
@@ -63,7 +63,7 @@ class Shooting:
     def solve(self, rod: Rod, rest: FloatArray, resolution: int) -> RodSolution:
         """Solve for the rest strains (n, segments, 6) of n cases, with `resolution` steps."""
         if len(rod.base.hinges):
-            return not_representable(rod, len(rest))
+            return RodSolution.unsolved(len(rest), RodStatus.NOT_REPRESENTABLE, rod.length)
         model = loaded_rod(rod, resolution)
         cases = [
             _Case(rod, model._replace(rest=one), self.stepper) for one in at_rest(rest, rod.length)
@@ -95,7 +95,7 @@ class _Case:
         wrench = guess.copy()
         model = self._under(factor)
         least, iterations = shoot(self.stepper, model, self.segments, wrench)
-        return Attempt(_status(least), wrench, iterations)
+        return Attempt(status_of(least), wrench, iterations)
 
     def _under(self, factor: float) -> Loaded:
         if factor == 1:
@@ -113,8 +113,8 @@ class _Case:
         return self.rod.base.position + self.rod.length * line, frame
 
 
-def _status(least: float) -> RodStatus:
-    """Of the least v3 found, which is not a number where the iteration diverged."""
+def status_of(least: float) -> RodStatus:
+    """The ending that the least v3 tells, which is not a number where the iteration diverged."""
     if np.isnan(least):
         return RodStatus.DIVERGED
     return RodStatus.CONVERGED if least > 0 else RodStatus.CRUSHED

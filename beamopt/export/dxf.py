@@ -8,10 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from beamopt.base.errors import InputError
 from beamopt.export.drawing import SCALE_BAR, Drawing
 from beamopt.export.faces import Contour
-from beamopt.export.step import is_installed
+from beamopt.export.step import require
 from beamopt.plot.style import TYPE_COLOURS
 from beamopt.section.feature_points import SUPPLIES
 
@@ -19,28 +18,16 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts import Modelspace
 
-__all__ = ["LAYERS", "NEEDS_EZDXF", "dxf_bytes", "require_ezdxf"]
+__all__ = ["LAYERS", "dxf_bytes"]
 
 LAYERS = ("MATERIAL", *(f"SUPPLY_{supply}" for supply in SUPPLIES))
 """By type: loops of material, and of each supply's chambers. Text stands on TEXT."""
 
-NEEDS_EZDXF = "needs ezdxf: pip install 'beamopt[export]'"
 MILLIMETRES = 4  # as $INSUNITS has it
 TEXT = 3.0  # mm, height of letters
 BELOW = 6.0  # mm from the section to the text
 
 _settings = threading.Lock()  # ezdxf's are the whole process's
-
-
-def require_ezdxf() -> None:
-    """Check that ezdxf is there.
-
-    Raises
-    ------
-    InputError : ezdxf is not installed; says what to install.
-    """
-    if not is_installed("ezdxf"):
-        raise InputError("--format", "", "dxf", f"{NEEDS_EZDXF}, or leave dxf out of --format")
 
 
 def dxf_bytes(drawing: Drawing) -> bytes:
@@ -54,7 +41,7 @@ def dxf_bytes(drawing: Drawing) -> bytes:
     ------
     InputError : ezdxf is not installed.
     """
-    require_ezdxf()
+    require("dxf")
     import ezdxf
 
     with _without_clock():

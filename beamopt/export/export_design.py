@@ -10,10 +10,10 @@ from beamopt.base.errors import InputError
 from beamopt.base.provenance import provenance
 from beamopt.export.bodies import BASE_THICKNESS, ExtrudedFace, body_solids, mould_solids
 from beamopt.export.drawing import Drawing, section_drawing
-from beamopt.export.dxf import NEEDS_EZDXF, dxf_bytes, require_ezdxf
+from beamopt.export.dxf import dxf_bytes
 from beamopt.export.faces import section_faces
 from beamopt.export.record import SCHEMA, export_record, notes_on
-from beamopt.export.step import NEEDS_GMSH, is_installed, require_gmsh, step_text
+from beamopt.export.step import NEEDS, is_installed, require, step_text
 from beamopt.export.stl import stl_bytes
 from beamopt.export.svg import svg_text
 from beamopt.outline.build import build_outline
@@ -149,13 +149,10 @@ def _exported(
 def _formats(options: ExportOptions) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The formats to write, and a line on each that needs a package which is not installed."""
     if options.formats is not None:
-        if "step" in options.formats:
-            require_gmsh()
-        if "dxf" in options.formats:
-            require_ezdxf()
+        for form in [form for form in NEEDS if form in options.formats]:
+            require(form)
         return options.formats, ()
-    needs = {"step": ("gmsh", NEEDS_GMSH), "dxf": ("ezdxf", NEEDS_EZDXF)}
-    missing = {form: said for form, (name, said) in needs.items() if not is_installed(name)}
+    missing = {form: said for form, (name, said) in NEEDS.items() if not is_installed(name)}
     left_out = tuple(f"{form} is left out: {said}" for form, said in missing.items())
     return tuple(form for form in FORMATS if form not in missing), left_out
 

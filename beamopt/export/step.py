@@ -16,26 +16,31 @@ from beamopt.export.bodies import ExtrudedFace
 from beamopt.export.faces import Contour
 from beamopt.storage.scratch import scratch_folder
 
-__all__ = ["NEEDS_GMSH", "is_installed", "require_gmsh", "step_text"]
+__all__ = ["NEEDS", "is_installed", "require", "step_text"]
 
 SECONDS = 300.0  # time limit of the kernel
 VOLUME_TOLERANCE = 1e-6  # of a solid's volume, between the kernel's and the contours'
 KERNEL = Path(__file__).with_name("kernel.py")
-NEEDS_GMSH = "needs gmsh: pip install 'beamopt[fem]'"
 SOLID = re.compile(r"(MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(''")
 PRODUCT = re.compile(r"PRODUCT\('[^']*',\s*'[^']*'")
 DATE = "2000-01-01T00:00:00"  # a file's bytes depend on what is in it alone
+NEEDS = {
+    "step": ("gmsh", "needs gmsh: pip install 'beamopt[fem]'"),
+    "dxf": ("ezdxf", "needs ezdxf: pip install 'beamopt[export]'"),
+}
+"""By format: the package that it is made with, and what to say where that is missing."""
 
 
-def require_gmsh() -> None:
-    """Check that the kernel is there.
+def require(form: str) -> None:
+    """Check that the package of a format is there.
 
     Raises
     ------
-    InputError : gmsh is not installed; says what to install.
+    InputError : it is not installed; says what to install.
     """
-    if not is_installed("gmsh"):
-        raise InputError("--format", "", "step", f"{NEEDS_GMSH}, or leave step out of --format")
+    package, said = NEEDS[form]
+    if not is_installed(package):
+        raise InputError("--format", "", form, f"{said}, or leave {form} out of --format")
 
 
 def is_installed(package: str) -> bool:
@@ -56,7 +61,7 @@ def step_text(solids: Sequence[ExtrudedFace], title: str, seconds: float = SECON
     ------
     InputError : gmsh is not installed, fails, or does not end within `seconds`.
     """
-    require_gmsh()
+    require("step")
     with scratch_folder() as folder:
         file = folder / "solids.step"
         volumes = _run([_plain(solid) for solid in solids], file, seconds)

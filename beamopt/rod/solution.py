@@ -39,6 +39,20 @@ class RodSolution:
     stations: FloatArray
     centrelines: FloatArray
 
+    @classmethod
+    def unsolved(cls, n: int, status: RodStatus, length: float) -> RodSolution:
+        """The answer where none of n cases of a rod of that length [mm] is solved."""
+        return cls(
+            status=(status,) * n,
+            tips=np.full((n, 3), np.nan),
+            rotations=np.full((n, 3, 3), np.nan),
+            factor=np.zeros(n),
+            error=np.full(n, np.nan),
+            iterations=np.zeros(n, dtype=np.int64),
+            stations=np.array([0.0, length]),
+            centrelines=np.full((n, 2, 3), np.nan),
+        )
+
     @property
     def converged(self) -> NDArray[np.bool_]:
         """(n,) where there is a tip."""

@@ -32,6 +32,7 @@ class Pieces:
 
 def count_pieces(grid: PolarGrid, labels: LabelArray) -> Pieces:
     """Count pieces joined over the four neighbours, round the ring where it is full."""
+    labels = np.array(labels, dtype=np.uint8)  # one kind of array, one kernel: not read-only
     row, first, _, lowest_run = connected_runs(labels, grid.is_full_ring)
     own = lowest_run == np.arange(row.size)
     counts = np.bincount(labels[row[own], first[own]], minlength=4).tolist()

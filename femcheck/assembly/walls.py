@@ -26,23 +26,13 @@ def wall_volumes(
 
     Facets are oriented with their normal out of the material, which is into the chamber.
     """
-    facets, nodes = walls.shape
-    for f in range(facets):
+    y = np.empty((3, 3))  # position, derivative along, derivative across
+    for f in range(walls.shape[0]):
         for g in range(weights.size):
-            p0 = p1 = p2 = s0 = s1 = s2 = t0 = t1 = t2 = 0.0
-            for a in range(nodes):
-                n, d, c = values[g, a], along[g, a], across[g, a]
-                y = x[walls[f, a]]
-                p0 += n * y[0]
-                p1 += n * y[1]
-                p2 += n * y[2]
-                s0 += d * y[0]
-                s1 += d * y[1]
-                s2 += d * y[2]
-                t0 += c * y[0]
-                t1 += c * y[1]
-                t2 += c * y[2]
-            triple = p0 * (s1 * t2 - s2 * t1) + p1 * (s2 * t0 - s0 * t2) + p2 * (s0 * t1 - s1 * t0)
+            _at_point(x, walls[f], values[g], along[g], across[g], y)
+            p, s, t = y[0], y[1], y[2]
+            triple = p[0] * (s[1] * t[2] - s[2] * t[1]) + p[1] * (s[2] * t[0] - s[0] * t[2])
+            triple += p[2] * (s[0] * t[1] - s[1] * t[0])
             volumes[supply[f] - 1] -= weights[g] * triple / 3
 
 

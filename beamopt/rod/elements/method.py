@@ -62,7 +62,7 @@ class Elements:
         from the unloaded rod. resolution : elements in all, at least one a segment.
         """
         if not all(np.isfinite(one.law.bending).all() for one in rod.segments):
-            return _nothing(len(rest), RodStatus.NOT_REPRESENTABLE)
+            return RodSolution.unsolved(len(rest), RodStatus.NOT_REPRESENTABLE, rod.length)
         mesh = meshed(rod, resolution, self.penalty)
         reached = self._cases(rod, mesh, rest)
         solution = _solution(mesh, reached)
@@ -148,18 +148,4 @@ def _solution(mesh: Mesh, reached: Sequence[Reached]) -> RodSolution:
         iterations=np.array([one.iterations for one in reached], dtype=np.int64),
         stations=np.concatenate([[0.0], np.cumsum(mesh.lengths)]),
         centrelines=h,
-    )
-
-
-def _nothing(n: int, status: RodStatus) -> RodSolution:
-    """No case of n is solved."""
-    return RodSolution(
-        status=(status,) * n,
-        tips=np.full((n, 3), np.nan),
-        rotations=np.full((n, 3, 3), np.nan),
-        factor=np.zeros(n),
-        error=np.full(n, np.nan),
-        iterations=np.zeros(n, dtype=np.int64),
-        stations=np.zeros(0),
-        centrelines=np.full((n, 0, 3), np.nan),
     )
