@@ -16,6 +16,7 @@ from beamopt.rod.elements.method import Elements
 from beamopt.rod.law import SectionLaw, cross
 from beamopt.rod.rod import STRAIGHT, Base, LineLoad, PointLoad, Rod, Segment, Tip
 from beamopt.rod.solution import Method
+from beamopt.rod.status import RodStatus
 from tests.beamopt.rod.elements.rods import (
     BENDS,
     METHOD,
@@ -36,6 +37,17 @@ def order(coarse: FloatArray, middle: FloatArray, fine: FloatArray) -> float:
 def test_it_is_a_method() -> None:
     method: Method = METHOD
     assert method.name == "elements"
+
+
+def test_an_endless_stiffness_is_not_representable() -> None:
+    """No case has a tip; the axis has its two ends, as other methods answer."""
+    law = replace(BENDS, bending=np.diag([np.inf, 1.0, 1.0]))
+    found = METHOD.solve(Rod((Segment(2.0, law),)), np.zeros((3, 1, 6)), 4)
+    assert found.status == (RodStatus.NOT_REPRESENTABLE,) * 3
+    assert np.isnan(found.tips).all()
+    assert (found.factor == 0).all()
+    assert found.stations.tolist() == [0.0, 2.0]
+    assert found.centrelines.shape == (3, 2, 3)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 3.0, 5.0])
