@@ -5,15 +5,18 @@ Full chains, of whole commands and solids, are in the validation suite `resume`.
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import beamopt.rod_map.stability
 import femcheck.stability.work
@@ -67,6 +70,33 @@ def search(folder: Path) -> None:
     keys = ["search.generations=4", "refine.finish=true", "refine.rounds=1"]
     scene = load_scene("hand-drawn-section", keys)
     optimize(scene, folder, resume=True, figures=False, callback=moment, refining=moment)
+
+
+def stop_at(generation: int, record: Any) -> None:
+    """Be interrupted, as by Ctrl-C."""
+    if record.index == generation:
+        raise KeyboardInterrupt
+
+
+def interrupted_search(folder: Path) -> None:
+    """A folder with all files of the first generations; figures of them must not stay."""
+    scene = load_scene("hand-drawn-section", ["search.generations=4"])
+    optimize(scene, folder, callback=partial(stop_at, 1))
+
+
+def goes_on(folder: Path) -> None:
+    optimize(load_scene("hand-drawn-section", ["search.generations=4"]), folder, resume=True)
+
+
+def interrupted_front(folder: Path) -> None:
+    """The same of a front."""
+    scene = load_scene("hand-drawn-workspace", ["search.generations=4"])
+    find_front(scene, ("L", "mass"), folder, population=8, callback=partial(stop_at, 1))
+
+
+def front_goes_on(folder: Path) -> None:
+    scene = load_scene("hand-drawn-workspace", ["search.generations=4"])
+    find_front(scene, ("L", "mass"), folder, population=8, resume=True)
 
 
 def study(folder: Path) -> None:
@@ -174,9 +204,10 @@ DEAR = {"search", "study", "bound", "chart of rods", "refinement"}
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Solids, samples and figures that take no time."""
 
-    def touch(figure: object, *paths: Path) -> None:
+    def touch(figure: Any, *paths: Path) -> None:
+        texts = [] if figure is None else [one.get_text() for one in figure.findobj(Text)]
         for path in paths:
-            write_atomic(path, "a figure")
+            write_atomic(path, json.dumps(texts))
 
     monkeypatch.setattr("beamopt.plot.style.save_figure", touch)
     for module in ("beamopt.chart.chart", "femcheck.chart.campaign"):
@@ -192,6 +223,16 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
         "solve_sample",
         lambda seed, index, methods: sample(seed, index, tuple(methods)),
     )
+
+
+@pytest.mark.parametrize(
+    ("begin", "work"), [(interrupted_search, goes_on), (interrupted_front, front_goes_on)]
+)
+def test_killed_after_an_interrupted_one(
+    begin: Callable[[Path], None], work: Callable[[Path], None], tmp_path: Path
+) -> None:
+    """What shows the first generations is made again, wherever the kill was."""
+    survives(work, tmp_path, kills=12, begin=begin)
 
 
 @pytest.mark.parametrize("name", WORK)

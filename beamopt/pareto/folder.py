@@ -17,7 +17,7 @@ from beamopt.scene.toml_text import scene_text
 from beamopt.search.kept_scene import PATHS, SOURCES, scene_to_keep
 from beamopt.storage.result_folder import FolderKind
 from beamopt.storage.timing import write_times
-from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
+from beamopt.storage.writing import csv_text, json_text, still_complete, write_atomic, write_changed
 
 __all__ = ["KIND", "begin_folder", "write_front"]
 
@@ -45,17 +45,19 @@ def write_front(folder: Path, front: Front, judge: Judge, *, figures: bool = Tru
     """
     designs = designs_of(front)
     names = {k: design_name(k) for k in designs}
-    _delete_designs(folder, names.values())
     # the table before the designs: a kill leaves none that it does not name
     texts = {"front.csv": front_csv(front, judge)}
     texts |= {names[k]: design.json() for k, design in designs.items()}
     texts["history.csv"] = _history_csv(front)
     texts["summary.json"] = json_text(_summary(front))
-    new = [name for name, text in texts.items() if write_changed(folder / name, text)]
-    drawn = all((folder / name).exists() for name in FIGURES)
-    if figures and front.designs and (new or not drawn):
+    complete = still_complete(folder, texts)
+    _delete_designs(folder, names.values())
+    for name, text in texts.items():
+        write_changed(folder / name, text)
+    drawn = complete and all((folder / name).exists() for name in FIGURES)
+    if figures and front.designs and not drawn:
         _draw(folder, front, designs)
-    if new or not (folder / "provenance.json").exists():
+    if not complete:
         write_times(folder / "timing.csv", front.timing, {})
         made = {"seed": front.scene.search.seed, **provenance(["pymoo", "moocore"])}
         write_atomic(folder / "provenance.json", json_text(made))

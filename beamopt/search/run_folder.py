@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +32,7 @@ from beamopt.search.run_summary import summary
 from beamopt.storage.input_file import read_bytes, read_json
 from beamopt.storage.result_folder import FolderKind, check_same, claimed
 from beamopt.storage.timing import read_times, write_times
-from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
+from beamopt.storage.writing import csv_text, json_text, still_complete, write_atomic, write_changed
 from beamopt.target.point_table import aim_csv
 from beamopt.target.target import Target
 
@@ -105,14 +105,15 @@ class RunFolder:
             write_changed(self.path / name, content)
         if len(target.aim):
             write_changed(self.path / "target.csv", aim_csv(target.aim))
-        self._write_scene(scene, refined_as_before=True)
+        text = self._scene_text(scene, refined_as_before=True)
+        write_changed(self.path / "scene.toml", text)
 
-    def _write_scene(self, scene: Scene, *, refined_as_before: bool) -> bool:
+    def _scene_text(self, scene: Scene, *, refined_as_before: bool) -> str:
         there = self.path / "scene.toml"
         if refined_as_before and there.exists():
             scene = scene.model_copy(update={"refine": load_scene(there).refine})
         kept, _ = scene_to_keep(scene)
-        return write_changed(there, scene_text(kept))
+        return scene_text(kept)
 
     def _check_same(self, scene: Scene, sources: dict[str, bytes]) -> None:
         """Refuse to go on with another scene's run, naming the first key that differs."""
@@ -146,20 +147,28 @@ class RunFolder:
             set_aside(self.path)
         stays = there in (EarlierRefinement.STAYS, EarlierRefinement.BETTER)
         numbers, times = self._of_refinement(result, stays)
-        changed = self._write_scene(result.scene, refined_as_before=stays)
-        changed |= self._write_search(result, figures)
+        texts = {
+            "scene.toml": self._scene_text(result.scene, refined_as_before=stays),
+            **_search_texts(result),
+        }
+        at_last = {"summary.json": json_text(summary(result) | numbers)}
+        complete = still_complete(self.path, texts | at_last)
+        self._write(texts)
+        drawn = complete and all((self.path / name).exists() for name in FIGURES)
+        if figures and _has_tables(result) and not drawn:
+            self._draw(result)
         if found is not None and not stays:
             write_refinement(self.path, result.scene, result.target, found, figures=figures)
-        changed |= self._write("summary.json", json_text(summary(result) | numbers))
-        provenance_file = self.path / "provenance.json"
-        if changed or not provenance_file.exists():
+        self._write(at_last)
+        if not complete:
             write_times(self.path / "timing.csv", result.timing, times)
             made = {"seed": result.scene.search.seed, **provenance()}
-            write_atomic(provenance_file, json_text(made))
+            write_atomic(self.path / "provenance.json", json_text(made))
         return there
 
-    def _write(self, name: str, text: str) -> bool:
-        return write_changed(self.path / name, text)
+    def _write(self, texts: Mapping[str, str]) -> None:
+        for name, text in texts.items():
+            write_changed(self.path / name, text)
 
     def _of_refinement(
         self, result: Optimisation, stays: bool
@@ -175,31 +184,6 @@ class RunFolder:
             return {}, {}
         return {"refinement": refinement_numbers(found, result.scene)}, found.times
 
-    def _write_search(self, result: Optimisation, figures: bool) -> bool:
-        """What the search found; says whether anything is new."""
-        rules = result.scene.making.rules_set
-        new = self._write("history.csv", history_csv(result.history, rules))
-        if result.verdict.status is not JudgeStatus.JUDGED:
-            return new
-        new |= self._write("best.json", result.best.json())
-        if result.last.best.verdict.status is JudgeStatus.JUDGED:
-            new |= self._write("final.json", result.final.json())
-        if math.isfinite(result.outline_loss):  # a sealed outline may not carry its loads
-            new |= self._write_tables(result)
-            if figures and (new or not all((self.path / name).exists() for name in FIGURES)):
-                self._draw(result)
-        return new
-
-    def _write_tables(self, result: Optimisation) -> bool:
-        """What the best design's tip does; says whether that is new."""
-        aim, new = result.target.aim, False
-        if len(aim):
-            new |= self._write("tips.csv", tips_table_csv(aim, result.answers))
-        if result.reach is not None:
-            counts = [len(path) for path in result.target.paths]
-            new |= self._write("paths.csv", paths_csv(result.reach, counts))
-        return new
-
     def _draw(self, result: Optimisation) -> None:
         from beamopt.plot.figures import convergence_figure, design_figure, design_title
         from beamopt.plot.style import save_figure
@@ -213,6 +197,29 @@ class RunFolder:
             ("convergence", convergence_figure(lowest, mean, ever, title)),
         ):
             save_figure(figure, self.path / f"{name}.svg", self.path / f"{name}.png")
+
+
+def _search_texts(result: Optimisation) -> dict[str, str]:
+    """What the search found, and what the best design's tip does: texts by file."""
+    texts = {"history.csv": history_csv(result.history, result.scene.making.rules_set)}
+    if result.verdict.status is not JudgeStatus.JUDGED:
+        return texts
+    texts["best.json"] = result.best.json()
+    if result.last.best.verdict.status is JudgeStatus.JUDGED:
+        texts["final.json"] = result.final.json()
+    aim = result.target.aim
+    if _has_tables(result) and len(aim):
+        texts["tips.csv"] = tips_table_csv(aim, result.answers)
+    if _has_tables(result) and result.reach is not None:
+        counts = [len(path) for path in result.target.paths]
+        texts["paths.csv"] = paths_csv(result.reach, counts)
+    return texts
+
+
+def _has_tables(result: Optimisation) -> bool:
+    """True if the best design is judged as drawn; a sealed outline may not carry its loads."""
+    judged = result.verdict.status is JudgeStatus.JUDGED
+    return judged and math.isfinite(result.outline_loss)
 
 
 def history_csv(history: Sequence[GenerationNumbers], with_rules: bool = False) -> str:

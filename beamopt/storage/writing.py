@@ -7,7 +7,7 @@ import errno
 import json
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,6 +21,7 @@ __all__ = [
     "naming",
     "refuse_link",
     "replacing",
+    "still_complete",
     "write_atomic",
     "write_changed",
 ]
@@ -134,10 +135,26 @@ def write_changed(path: Path, content: str | bytes) -> bool:
     """
     data = _bytes(content)
     refuse_link(path)
-    if path.is_file() and path.read_bytes() == data:
+    if _holds(path, data):
         return False
     write_atomic(path, data)
     return True
+
+
+def _holds(path: Path, data: bytes) -> bool:
+    return path.is_file() and path.read_bytes() == data
+
+
+def still_complete(folder: Path, texts: Mapping[str, str]) -> bool:
+    """True if a folder was written to its end, and these of its files stay as they are.
+
+    Its `provenance.json`, which is written last, says the first. It is deleted where a file is to
+    change: a kill between the files leaves a folder whose figures and times are made again.
+    """
+    mark = folder / "provenance.json"
+    if not all(_holds(folder / name, _bytes(text)) for name, text in texts.items()):
+        mark.unlink(missing_ok=True)
+    return mark.exists()
 
 
 def csv_text(header: str, rows: Iterable[Sequence[object]]) -> str:

@@ -14,7 +14,7 @@ from beamopt.plot.study import case_figure, losses_figure
 from beamopt.plot.style import save_figure
 from beamopt.scene.design import Design, load_design
 from beamopt.scene.scene import load_scene
-from beamopt.storage.writing import csv_text, json_text, write_atomic, write_changed
+from beamopt.storage.writing import csv_text, json_text, still_complete, write_atomic, write_changed
 from beamopt.study.plan import COMBINATIONS, TARGETS, Plan
 from beamopt.study.refined import write_refined
 from beamopt.study.table import (
@@ -66,7 +66,9 @@ def write_report(
         "convergence.csv": _convergence_csv(spreads),
         "best_ever.csv": _best_ever_csv(outcomes),
     }
-    new = [name for name, text in tables.items() if write_changed(folder / name, text)]
+    complete = still_complete(folder, tables)
+    for name, text in tables.items():
+        write_changed(folder / name, text)
     cases = {target: _best_and_worst(folder, outcomes, target) for target in plan.targets}
     if figures:
         drawn = losses_figure(spreads, {target: title(target) for target in plan.targets})
@@ -76,7 +78,7 @@ def write_report(
             save_figure(drawn, folder / f"{target}.svg", folder / f"{target}.png")
     if plan.refine:
         write_refined(folder, outcomes, plan, figures=figures)
-    if not new and (folder / "provenance.json").exists():
+    if complete:
         return
     rows = [("study", seconds, "s"), ("workers", workers, "1")]
     rows += [(one.run.name, one.seconds, "s") for one in outcomes]

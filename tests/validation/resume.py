@@ -186,14 +186,14 @@ SILICONE = ("--law", "neo-hookean", "--nu", "0.4")
 STUDY = ("study", "--iterations", "1", "--set", "search.generations=4")
 FRONT = ("pareto", "random-section", "--objectives", "L,mass", "--population", "24")
 CHAINS = (
-    Chain("study", (*STUDY, "--workers", "2"), 6, processes=True),
-    Chain("front", (*FRONT, "--generations", "30"), 8),
-    Chain("bound", ("bound", "hand-drawn-workspace"), 6, goes_on=False),
-    Chain("export", ("export", "{small}"), 8, goes_on=False),
+    Chain("study", (*STUDY, "--workers", "2"), 3, processes=True),
+    Chain("front", (*FRONT, "--generations", "30"), 5),
+    Chain("bound", ("bound", "hand-drawn-workspace"), 4, goes_on=False),
+    Chain("export", ("export", "{small}"), 5, goes_on=False),
     Chain(
         "chart of rods",
         ("chart", "gravity"),
-        3,
+        2,
         goes_on=False,
         apart=("chart.csv", "chart.svg", "chart.png"),  # a clock ends its methods
     ),
@@ -204,11 +204,11 @@ CHAINS = (
         apart=("reading.md", "stability.svg", "stability.png"),
         processes=True,
     ),
-    Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 8, processes=True),
+    Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 5, processes=True),
     Chain(
         "prediction",
         ("femcheck", "run", "{small}", "--law", "neo-hookean", *SOLID),
-        8,
+        5,
         processes=True,
     ),
     Chain(
@@ -217,12 +217,12 @@ CHAINS = (
         2,
     ),
     Chain(
-        "baseline", ("femcheck", "baseline", "{small}", "--force"), 4, goes_on=False, processes=True
+        "baseline", ("femcheck", "baseline", "{small}", "--force"), 3, goes_on=False, processes=True
     ),
     Chain(
         "chart",
         ("femcheck", "chart", "{small}", "--family", "raster", "--family", "beam"),
-        6,
+        4,
         apart=("chart.svg", "chart.png", "reading.md", "cheapest.csv"),
         processes=True,
     ),
