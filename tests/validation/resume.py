@@ -201,7 +201,14 @@ CHAINS = (
         "map of rods",
         ("stability", "--samples", "4", "--workers", "2"),
         2,
-        apart=("reading.md", "stability.svg", "stability.png"),
+        apart=(
+            "reading.md",
+            *(
+                f"{figure}.{end}"
+                for figure in ("stability", "slenderness")
+                for end in ("svg", "png")
+            ),
+        ),
         processes=True,
     ),
     Chain("check", ("femcheck", "run", "{small}", "--element", "tet4", *SOLID), 5, processes=True),
