@@ -187,7 +187,7 @@ WORK: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
     "front that grows": (front_that_grows, ()),
     "bound": (bound, ()),
     "refinement": (refinement, ()),
-    "chart of rods": (chart_of_rods, ()),
+    "chart of rods": (chart_of_rods, ("chart.svg", "chart.png")),
     "map of rods": (map_of_rods, ("reading.md",)),
     "export": (export, ()),
     "accuracy": (accuracy, ()),

@@ -11,6 +11,7 @@ import pytest
 from typer.main import get_command
 
 import beamopt.cli.application
+import beamopt.storage.campaign
 import femcheck.cli.application
 import femcheck.cli.stability
 import femcheck.cli.subjects
@@ -130,7 +131,7 @@ def shorten(line: str, patch: pytest.MonkeyPatch) -> AbstractContextManager[obje
     if line.startswith("femcheck baseline"):
         sections = {"sections": LADDER[: LADDER.index("raster")]}
         patch.setattr(femcheck.regression.measure, "PARTS", sections)
-        patch.setattr(femcheck.regression.measure, "processes", in_process)
+        patch.setattr(beamopt.storage.campaign, "processes", in_process)
     return MadeUp(powers(1.0, 2)).instead() if "--law gent" in line else nullcontext()
 
 
