@@ -270,7 +270,7 @@ def in_parts(
     executor: Executor | None,
     workers: int,
 ) -> list[Found]:
-    """What `judged` finds of each candidate, in their order, asked in `workers` parts at a time.
+    """Results of `judged` for all candidates, in their order, asked in `workers` parts at a time.
 
     Raises
     ------

@@ -55,7 +55,7 @@ def sizes_of(kind: CaseKind) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class RodCase:
-    """What there is to solve: number `index` of a seed. size : see `CaseKind.text`."""
+    """A rod under load to be solved: number `index` of a seed. size : see `CaseKind.text`."""
 
     seed: int
     index: int

@@ -200,7 +200,7 @@ class RunFolder:
 
 
 def _search_texts(result: Optimisation) -> dict[str, str]:
-    """What the search found, and what the best design's tip does: texts by file."""
+    """Texts by file: findings of the search, and tips of the best design."""
     texts = {"history.csv": history_csv(result.history, result.scene.making.rules_set)}
     if result.verdict.status is not JudgeStatus.JUDGED:
         return texts

@@ -16,7 +16,7 @@ __all__ = ["FREE", "MakingRules"]
 
 @dataclass(frozen=True, eq=False)
 class MakingRules:
-    """What a judge asks of a section beside its tips.
+    """Questions of a judge to a section beside its tips.
 
     chambers : the most separate chambers of each supply; None for any number.
     rejects : whether a section with more of them is rejected, instead of weighed.
@@ -38,7 +38,7 @@ class MakingRules:
 
     @property
     def counts_chambers(self) -> bool:
-        """Whether chambers have to be counted."""
+        """True if chambers have to be counted."""
         return self.counts or self.chambers is not None
 
     @property

@@ -77,16 +77,20 @@ def killed(arguments: Sequence[str], after: float, temporary: Path, number: int)
             os.kill(process.pid, number)
             _, said = process.communicate()
             if process.returncode not in ENDED:
-                _check_ended(process.returncode, number, said)
+                out = Path(arguments[arguments.index("--out") + 1])
+                _check_ended(process.returncode, number, said, out)
                 return True
     assert process.returncode in ENDED, said
     return False
 
 
-def _check_ended(code: int, number: int, said: str) -> None:
-    """One line and the exit code of shells; or nothing, by a signal that came before Python."""
-    if number == signal.SIGKILL or code == -number:
+def _check_ended(code: int, number: int, said: str, out: Path) -> None:
+    """One line and the exit code of shells; none where all was written, and Python was ending."""
+    if number == signal.SIGKILL:
         assert code == -number
+        return
+    if code == -number:
+        assert (out / "provenance.json").exists(), said
         return
     lines = [line for line in said.splitlines() if line.partition(": ")[0] in PROGRAMS]
     assert code == 128 + number, said
